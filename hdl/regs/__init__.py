@@ -1,0 +1,1 @@
+"""The sensor's registers, all of them from one description, hdl/registers.rdl."""

@@ -1,0 +1,199 @@
+"""Registers as hardware, made from their description.
+
+Contract: every field has the port that its :class:`~hdl.regs.map.Behaviour` asks for, called
+``register.field``:
+
+========  ==========================  ======================================================================
+SETTING   ``name : Out(width)``       what software wrote last
+VALUE     ``name : In(width)``        what software reads
+FLAG      ``name_set : In(1)``        sets it; at the same time as software clears it, it stays set
+COUNTER   ``name_incr : In(1)``       adds 1; at the same time as software clears it, it becomes 1
+CONSTANT  no port
+========  ==========================  ======================================================================
+
+A window has ``window.index``, the number of the item that the bus asks for, and ``window.select``, set if it
+is this window that it asks, both in the clock of the address, and takes the item's fields one clock later:
+``window.register.field``. So a memory's read port fits as it is. Windows cannot be written.
+
+Numbers: see :class:`~hdl.regs.bus.RegisterBus`; one multiplexer of all registers between the clock of
+``window.index`` plus 1 and ``read_data``. ``irq`` is a register: one clock after a flag that is enabled by
+its setting.
+"""
+
+from amaranth import C, Cat, Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from hdl.config import SensorConfig
+from hdl.regs.bus import RegisterBus
+from hdl.regs.map import Behaviour, sensor_map
+
+__all__ = ["RegisterBank", "sensor_bank"]
+
+
+def _field_ports(fields):
+    """Ports of the fields of one register."""
+    ports = {}
+    for field in fields:
+        match field.behaviour:
+            case Behaviour.SETTING:
+                ports[field.name] = Out(field.width, init=field.reset)
+            case Behaviour.VALUE:
+                ports[field.name] = In(field.width)
+            case Behaviour.FLAG:
+                ports[f"{field.name}_set"] = In(1)
+            case Behaviour.COUNTER:
+                ports[f"{field.name}_incr"] = In(1)
+    return ports
+
+
+def _register_ports(registers):
+    """A nested signature for each register that has ports."""
+    ports = {register.name: _field_ports(register.fields) for register in registers}
+    return {name: Out(wiring.Signature(members)) for name, members in ports.items() if members}
+
+
+def _window_ports(window):
+    return wiring.Signature(
+        {"index": Out(range(window.count)), "select": Out(1)} | _register_ports(window.registers)
+    )
+
+
+class RegisterBank(wiring.Component):
+    """All registers of a map, behind one bus.
+
+    Parameters
+    ----------
+    registers : RegisterMap
+        What there is. Windows may have fields of constants and values only.
+
+    Raises
+    ------
+    ValueError
+        If a window has other fields.
+
+    Members
+    -------
+    bus : :py:`In(RegisterBus(registers.addr_width))`
+        From the processor.
+    irq : :py:`Out(1)`
+        High while any enabled flag is set.
+    ... : one member for each register that has ports, and for each window; see above.
+    """
+
+    def __init__(self, *, registers):
+        for window in registers.windows:
+            for register in window.registers:
+                for field in register.fields:
+                    if field.behaviour not in (Behaviour.CONSTANT, Behaviour.VALUE):
+                        path = f"{window.name}.{register.name}.{field.name}"
+                        raise ValueError(f"{path}: a window can only be read")
+        self.map = registers
+        super().__init__(
+            {
+                "bus": In(RegisterBus(registers.addr_width)),
+                "irq": Out(1),
+                **_register_ports(registers.registers),
+                **{window.name: Out(_window_ports(window)) for window in registers.windows},
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        address, reads = Signal.like(self.bus.address), Signal()
+        m.d.sync += [address.eq(self.bus.address), reads.eq(self.bus.read)]
+        values = {}  # (register, field) -> what software reads
+        word = Signal(32)
+        words = {register.offset // 4: self._register(m, register, values) for register in self.map.registers}
+        with m.Switch(address):
+            for offset, value in words.items():
+                with m.Case(offset):
+                    m.d.comb += word.eq(value)
+            for window in self.map.windows:
+                for register in window.registers:
+                    with m.Case(self._pattern(window, register)):
+                        m.d.comb += word.eq(self._item(window, register))
+        self._connect_windows(m)
+        m.d.sync += self.bus.read_data.eq(word & reads.replicate(32))
+        interrupts = [
+            values[register.name, field.name] & values[field.enable]
+            for register in self.map.registers
+            for field in register.fields
+            if field.enable
+        ]
+        m.d.sync += self.irq.eq(Cat(interrupts).any())
+        return m
+
+    def _bits(self, number, width):
+        return format(number, f"0{width}b") if width else ""
+
+    def _pattern(self, window, register=None):
+        """Word addresses of a window, or of one register of all its items."""
+        low, high = (window.stride // 4 - 1).bit_length(), (window.count - 1).bit_length()
+        prefix = self._bits(window.offset // 4 >> low + high, self.map.addr_width - low - high)
+        return prefix + "-" * high + (self._bits(register.offset // 4, low) if register else "-" * low)
+
+    def _connect_windows(self, m):
+        for window in self.map.windows:
+            ports = getattr(self, window.name)
+            m.d.comb += [
+                ports.index.eq(self.bus.address >> (window.stride // 4 - 1).bit_length()),
+                ports.select.eq(self.bus.address.matches(self._pattern(window))),
+            ]
+
+    @staticmethod
+    def _word(values):
+        """32 bits from ``{field: value}``."""
+        parts, position = [], 0
+        for field, value in sorted(values.items(), key=lambda item: item[0].low):
+            parts += [C(0, field.low - position), value]
+            position = field.low + field.width
+        return Cat(*parts)
+
+    def _item(self, window, register):
+        """What the register of a window's item reads as."""
+        ports = getattr(getattr(self, window.name), register.name, None)
+        return self._word(
+            {
+                field: C(field.reset, field.width)
+                if field.behaviour == Behaviour.CONSTANT
+                else getattr(ports, field.name)
+                for field in register.fields
+            }
+        )
+
+    def _register(self, m, register, values):
+        """Make a register, and return what it reads as."""
+        written = Signal(name=f"{register.name}_written")
+        m.d.comb += written.eq(self.bus.write & (self.bus.address == register.offset // 4))
+        ports = getattr(self, register.name, None)
+        word = {}
+        for field in register.fields:
+            name = f"{register.name}_{field.name}"
+            data = self.bus.write_data[field.low : field.low + field.width]
+            match field.behaviour:
+                case Behaviour.CONSTANT:
+                    value = C(field.reset, field.width)
+                case Behaviour.VALUE:
+                    value = getattr(ports, field.name)
+                case Behaviour.SETTING:
+                    value = getattr(ports, field.name)
+                    with m.If(written):
+                        m.d.sync += value.eq(data)
+                case Behaviour.FLAG:
+                    value = Signal(init=field.reset, name=name)
+                    m.d.sync += value.eq(value & ~(written & data) | getattr(ports, f"{field.name}_set"))
+                case Behaviour.COUNTER:
+                    value = Signal(field.width, init=field.reset, name=name)
+                    increment = getattr(ports, f"{field.name}_incr")
+                    with m.If(written):
+                        m.d.sync += value.eq(increment)
+                    with m.Elif(~value.all()):
+                        m.d.sync += value.eq(value + increment)
+            word[field] = values[register.name, field.name] = value
+        return self._word(word)
+
+
+def sensor_bank(*, width, height):
+    """The sensor's registers for a largest frame of ``width`` x ``height`` pixels."""
+    return RegisterBank(registers=sensor_map(SensorConfig(width=width, height=height)))

@@ -1,0 +1,233 @@
+"""The whole sensor: camera pixels and a register bus in, results behind the bus and an interrupt out. Wiring only."""
+
+from amaranth import Module
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out, connect, flipped
+
+from hdl.config import SensorConfig
+from hdl.pixels import CameraPixel, unstalled
+from hdl.regs.bank import RegisterBank
+from hdl.regs.bus import RegisterBus
+from hdl.regs.map import sensor_map
+from hdl.stores.frame_counter import FrameCounter
+from hdl.stores.frame_store import FrameStore
+from hdl.stores.publisher import Publisher
+from hdl.vision.blob import blob_layout
+from hdl.vision.corners import Corners, corner_item
+from hdl.vision.framer import Framer
+from hdl.vision.grey import Grey
+from hdl.vision.matching.geometry import marker_layout
+from hdl.vision.matching.matching import Matching
+from hdl.vision.segmentation.segmentation import Segmentation
+from hdl.vision.size_filter import SizeFilter
+from hdl.vision.threshold import Threshold
+
+__all__ = ["SMALLEST_FRAME", "Sensor", "sensor"]
+
+#: Least number of columns and of rows: the stores rely on a frame that takes longer than the pipelines.
+SMALLEST_FRAME = 16
+
+
+def _kept(layout, names):
+    """The fields of ``layout`` that a store keeps."""
+    return data.StructLayout({name: layout[name].shape for name in names})
+
+
+class Sensor(wiring.Component):
+    """RasterPose without the soft core.
+
+    ::
+
+        camera -> framer -> grey -> threshold -> segmentation -> size filter -> publisher -> box store
+                                |                                                |   ^
+                                |                                                v   |
+                                |                                             matching -> marker store
+                                '-> corners ------------------------------> publisher -> corner store
+
+    Throughput: one pixel a clock, any gaps or none. Latency: a marker is readable in the live window a row or two
+    after its last row; a frame is published when its last candidate is matched.
+
+    Parameters
+    ----------
+    config : SensorConfig
+
+    Members
+    -------
+    camera : In(unstalled(CameraPixel))
+    bus : In(RegisterBus)
+        See ``hdl/registers.rdl``.
+    irq : Out(1)
+    """
+
+    def __init__(self, *, config=None):
+        self._config = config or SensorConfig()
+        self._bank = RegisterBank(registers=sensor_map(self._config))
+        super().__init__(
+            {
+                "camera": In(unstalled(CameraPixel)),
+                "bus": In(RegisterBus(self._bank.map.addr_width)),
+                "irq": Out(1),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        config = self._config
+        sizes = {"width": config.width, "height": config.height}
+        m.submodules.registers = registers = self._bank
+        m.submodules.framer = framer = Framer(**sizes, smallest=SMALLEST_FRAME)
+        m.submodules.grey = grey = Grey()
+        m.submodules.threshold = threshold = Threshold()
+        m.submodules.segmentation = segmentation = Segmentation(**sizes)
+        m.submodules.size_filter = size_filter = SizeFilter(**sizes)
+        m.submodules.corners = corners = Corners(**sizes)
+        m.submodules.matching = matching = Matching(**sizes, depth=config.candidate_depth)
+        m.submodules.publisher = publisher = Publisher(
+            blob=blob_layout(**sizes), corner=corner_item(**sizes), marker=marker_layout(**sizes)
+        )
+
+        # Pixels.
+        connect(m, flipped(self.bus), registers.bus)
+        m.d.comb += [
+            self.irq.eq(registers.irq),
+            framer.i.payload.eq(self.camera.payload),
+            framer.i.valid.eq(self.camera.valid),
+            threshold.i.payload.eq(grey.o.payload),
+            threshold.i.valid.eq(grey.o.valid),
+            corners.i.payload.eq(grey.o.payload),
+            corners.i.valid.eq(grey.o.valid),
+        ]
+        connect(m, framer.o, grey.i)
+        connect(m, threshold.o, segmentation.i)
+
+        # Results.
+        connect(m, segmentation.o, size_filter.i)
+        connect(m, size_filter.o, publisher.i_blob)
+        connect(m, corners.o, publisher.i_corner)
+        connect(m, matching.o, publisher.i_marker)
+        m.d.comb += [
+            matching.i.payload.eq(publisher.o_blob.payload),
+            matching.i.valid.eq(publisher.o_blob.valid),
+        ]
+        self._connect_settings(m, registers, framer, threshold, size_filter, corners, matching, publisher)
+        self._connect_events(m, registers, framer, segmentation, matching, publisher)
+        self._connect_stores(m, registers, publisher)
+        self._connect_counters(m, registers, size_filter, matching, publisher)
+        return m
+
+    @staticmethod
+    def _connect_settings(m, registers, framer, threshold, size_filter, corners, matching, publisher):
+        m.d.comb += [
+            framer.enable.eq(registers.control.enable),
+            framer.columns.eq(registers.frame_size.columns),
+            framer.rows.eq(registers.frame_size.rows),
+            threshold.level.eq(registers.threshold.level),
+            threshold.bright.eq(registers.control.bright),
+            corners.n.eq(registers.fast.n),
+            corners.threshold.eq(registers.fast.threshold),
+            corners.max_arc.eq(registers.fast.max_arc),
+            corners.suppress.eq(1),
+            size_filter.min_width.eq(registers.blob_min.width),
+            size_filter.min_height.eq(registers.blob_min.height),
+            size_filter.min_area.eq(registers.blob_min_area.pixels),
+            matching.columns.eq(framer.frame_columns),
+            matching.rows.eq(framer.frame_rows),
+            matching.min_side.eq(registers.marker_min.side),
+            publisher.hold.eq(registers.control.hold),
+        ]
+
+    @staticmethod
+    def _connect_events(m, registers, framer, segmentation, matching, publisher):
+        m.d.comb += [
+            registers.status.valid.eq(publisher.valid),
+            registers.status.held.eq(publisher.held),
+            registers.status.pending.eq(publisher.pending),
+            registers.frame.number.eq(publisher.frame),
+            registers.live.frame.eq(publisher.live_frame),
+            registers.irq_status.published_set.eq(publisher.published),
+            registers.flags.candidate_overflow_set.eq(matching.dropped),
+            registers.flags.queue_overflow_set.eq(segmentation.overflow | matching.overflow),
+            registers.frames_complete.count_incr.eq(publisher.complete),
+            registers.frames_skipped.count_incr.eq(publisher.skipped),
+            registers.short_lines.count_incr.eq(framer.o_error.short_line),
+            registers.long_lines.count_incr.eq(framer.o_error.long_line),
+            registers.short_frames.count_incr.eq(framer.o_error.short_frame),
+            registers.midline_starts.count_incr.eq(framer.o_error.midline_start),
+            registers.long_frames.count_incr.eq(framer.o_error.long_frame),
+            registers.bad_sizes.count_incr.eq(framer.o_error.bad_size),
+        ]
+
+    def _connect_stores(self, m, registers, publisher):
+        sizes = {"width": self._config.width, "height": self._config.height}
+        vertices = ("v1", "v2", "v3", "v4", "box_min", "box_max", "area", "gap_area")
+        blob = _kept(blob_layout(**sizes), ("x_min", "y_min", "x_max", "y_max", "area"))
+        corner = _kept(corner_item(**sizes), ("x", "y", "score", "arc", "bright"))
+        marker = _kept(marker_layout(**sizes), vertices)
+        stores = {}
+        for name, stream, layout, depth, counts, overflow in (
+            ("blob", publisher.o_blob, blob, self._config.blob_depth, registers.blobs, "blob_overflow_set"),
+            ("corner", publisher.o_corner, corner, self._config.corner_depth, registers.corners, "corner_overflow_set"),
+            ("marker", publisher.o_marker, marker, self._config.marker_depth, registers.markers, "marker_overflow_set"),
+        ):  # fmt: skip
+            m.submodules[f"{name}_store"] = store = stores[name] = FrameStore(shape=layout, depth=depth)
+            m.d.comb += [
+                store.i_valid.eq(stream.valid),
+                store.i_kind.eq(stream.payload.kind),
+                *(store.i[field].eq(stream.payload[field]) for field, _ in layout),
+                counts.count.eq(store.count),
+                counts.dropped.eq(store.dropped),
+                getattr(registers.flags, overflow).eq(store.overflow),
+            ]
+        m.d.comb += [
+            registers.live.markers.eq(stores["marker"].live_count),
+            registers.irq_status.marker_set.eq(stores["marker"].stored),
+        ]
+
+        window, item = registers.blob_window, stores["blob"].read_data
+        m.d.comb += [
+            stores["blob"].read_addr.eq(window.index),
+            window.box_min.x.eq(item.x_min),
+            window.box_min.y.eq(item.y_min),
+            window.box_max.x.eq(item.x_max),
+            window.box_max.y.eq(item.y_max),
+            window.area.pixels.eq(item.area),
+        ]
+        window, item = registers.corner_window, stores["corner"].read_data
+        m.d.comb += [
+            stores["corner"].read_addr.eq(window.index),
+            window.position.x.eq(item.x),
+            window.position.y.eq(item.y),
+            *(getattr(window.detail, field).eq(item[field]) for field in ("score", "arc", "bright")),
+        ]
+        item = stores["marker"].read_data
+        m.d.comb += [
+            stores["marker"].read_live.eq(registers.live_window.select),
+            stores["marker"].read_addr.eq(registers.marker_window.index),
+        ]
+        for window in (registers.marker_window, registers.live_window):
+            for name in vertices:
+                register = getattr(window, name)
+                if name.endswith("area"):
+                    m.d.comb += register.pixels.eq(item[name])
+                else:
+                    m.d.comb += [register.x.eq(item[name].x), register.y.eq(item[name].y)]
+
+    @staticmethod
+    def _connect_counters(m, registers, size_filter, matching, publisher):
+        m.submodules.small_blobs = small_blobs = FrameCounter()
+        m.submodules.lost_candidates = lost_candidates = FrameCounter()
+        for counter, event, stream, value in (
+            (small_blobs, size_filter.small, publisher.o_blob, registers.blobs_small.count),
+            (lost_candidates, matching.dropped, publisher.o_marker, registers.candidates_dropped.count),
+        ):
+            m.d.comb += [
+                counter.i_valid.eq(stream.valid),
+                counter.i_kind.eq(stream.payload.kind),
+                counter.event.eq(event),
+                value.eq(counter.count),
+            ]
+
+
+def sensor(*, width, height):
+    """The sensor with stores of the usual sizes, for frames of up to ``width`` x ``height`` pixels."""
+    return Sensor(config=SensorConfig(width=width, height=height))

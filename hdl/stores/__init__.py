@@ -1,0 +1,1 @@
+"""Results of whole frames, where software finds them."""

@@ -1,0 +1,39 @@
+"""Whether markers are found and how exactly: random rendered frames, and photographs without any."""
+
+from sim.bench.registry import at_least, at_most, measurement
+
+
+@measurement("found_rate", "Markers found in random frames", "", target=at_least(0.99))
+def found_rate(bench):
+    """Part of the rendered markers that were found, in whatever order."""
+    return bench.score.found_rate
+
+
+@measurement("false_markers", "False markers in random frames", "", target=at_most(0))
+def false_markers(bench):
+    """Reported markers that are none of the rendered ones."""
+    return bench.score.false
+
+
+@measurement("wrong_order", "Found, but not with V1 first", "", target=at_most(0))
+def wrong_order(bench):
+    """Found markers whose first vertex is not V1."""
+    return bench.score.wrong_order
+
+
+@measurement("vertex_rms_px", "Vertices of found markers, rms", "px", target=at_most(1.5))
+def vertex_rms_px(bench):
+    """Root mean square distance of the vertices from the true ones."""
+    return bench.score.rms_px
+
+
+@measurement("vertex_p95_px", "Vertices of found markers, 95 % within", "px", target=at_most(2.5))
+def vertex_p95_px(bench):
+    """What 95 % of the vertices are within."""
+    return bench.score.p95_px
+
+
+@measurement("false_markers_photographs", "False markers in 20 photographs", "", target=at_most(0))
+def false_markers_photographs(bench):
+    """Markers reported where there are none."""
+    return bench.photograph_markers

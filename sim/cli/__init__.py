@@ -1,0 +1,1 @@
+"""The commands of ``python -m sim``, one a file; ``app`` gathers them."""

@@ -1,0 +1,167 @@
+// The sensor with a camera and a bus master around it: pixels go in without a pause, and whenever a frame is published
+// its results are read through the register bus, as a processor would do it, while the next frame comes in.
+//
+// registers.h is generated from the register map (sim/engine/sensor.py).
+
+#include <cstdint>
+#include <new>
+#include <vector>
+
+#include "Vdut.h"
+#include "registers.h"
+
+namespace {
+
+struct Run {
+    const uint32_t* pixels;
+    int64_t count;
+    const uint8_t* idle;  // clocks before each pixel, or null
+    int64_t* fed;         // clock of each pixel that is marked sof, in order
+    int64_t next = 0;
+    int64_t frames = 0;
+    int wait = 0;
+};
+
+struct Sensor {
+    VerilatedContext context;
+    Vdut dut{&context, ""};
+    int64_t clock = 0;
+    Run* run = nullptr;
+    uint32_t control = 0;
+    std::vector<uint32_t> words;   // published frames, each a header and its items
+    std::vector<int64_t> markers;  // clock, frame, number of each marker when it was first read from the live window
+
+    void drive() {
+        bool valid = false;
+        if (run && run->next < run->count) {
+            if (run->wait > 0) {
+                run->wait--;
+            } else {
+                valid = true;
+                dut.camera___05Fpayload = run->pixels[run->next];
+                if (run->pixels[run->next] >> SOF_BIT & 1) run->fed[run->frames++] = clock;
+                run->next++;
+                run->wait = run->idle && run->next < run->count ? run->idle[run->next] : 0;
+            }
+        }
+        dut.camera___05Fvalid = valid;
+    }
+
+    void tick() {
+        drive();
+        dut.clk = 0;
+        dut.eval();
+        dut.clk = 1;
+        dut.eval();
+        clock++;
+    }
+
+    void write(uint32_t offset, uint32_t value) {
+        dut.bus___05Faddress = offset >> 2;
+        dut.bus___05Fwrite_data = value;
+        dut.bus___05Fwrite = 1;
+        tick();
+        dut.bus___05Fwrite = 0;
+    }
+
+    // Consecutive words, one a clock; data come READ_LATENCY clocks after their address.
+    void read(uint32_t offset, int64_t count, std::vector<uint32_t>& into) {
+        for (int64_t k = 0; k < count + READ_LATENCY - 1; k++) {
+            dut.bus___05Fread = k < count;
+            dut.bus___05Faddress = (offset >> 2) + k;
+            tick();
+            if (k >= READ_LATENCY - 1) into.push_back(dut.bus___05Fread_data);
+        }
+        dut.bus___05Fread = 0;
+    }
+
+    uint32_t read(uint32_t offset) {
+        std::vector<uint32_t> one;
+        read(offset, 1, one);
+        return one[0];
+    }
+
+    void read_published() {
+        write(CONTROL, control | CONTROL_HOLD);
+        while (!(read(STATUS) & STATUS_HELD)) {
+        }
+        write(IRQ_STATUS, IRQ_PUBLISHED);
+        const uint32_t blobs = read(BLOBS), corners = read(CORNERS), markers = read(MARKERS);
+        words.insert(words.end(), {read(FRAME), blobs, read(BLOBS_SMALL), corners, markers, read(CANDIDATES_DROPPED)});
+        read(BLOB_WINDOW, BLOB_WORDS * (blobs & 0xFFFF), words);
+        read(CORNER_WINDOW, CORNER_WORDS * (corners & 0xFFFF), words);
+        read(MARKER_WINDOW, MARKER_WORDS * (markers & 0xFFFF), words);
+        write(CONTROL, control);
+    }
+
+    void watch_live(uint32_t& seen) {
+        const uint32_t live = read(LIVE);
+        const uint32_t known = (live & 0xFFFF) == (seen & 0xFFFF) ? seen >> 16 : 0;
+        for (uint32_t k = known; k < live >> 16; k++) {
+            std::vector<uint32_t> marker;
+            read(LIVE_WINDOW + 4 * MARKER_WORDS * k, MARKER_WORDS, marker);
+            markers.insert(markers.end(), {clock, live & 0xFFFF, static_cast<int64_t>(k)});
+            markers.insert(markers.end(), marker.begin(), marker.end());
+        }
+        seen = live;
+    }
+};
+
+}  // namespace
+
+extern "C" {
+
+#define EXPORT __attribute__((visibility("default")))
+
+EXPORT Sensor* sensor_new() { return new (std::nothrow) Sensor; }
+
+EXPORT void sensor_delete(Sensor* sensor) { delete sensor; }
+
+EXPORT void sensor_reset(Sensor* sensor) {
+    sensor->run = nullptr;
+    sensor->dut.bus___05Fread = sensor->dut.bus___05Fwrite = 0;
+    sensor->dut.rst = 1;
+    sensor->tick();
+    sensor->dut.rst = 0;
+}
+
+EXPORT void sensor_write(Sensor* sensor, uint32_t offset, uint32_t value) {
+    if (offset == CONTROL) sensor->control = value;
+    sensor->write(offset, value);
+}
+
+EXPORT uint32_t sensor_read(Sensor* sensor, uint32_t offset) { return sensor->read(offset); }
+
+// Feed pixels and read results until ``publications`` frames are published or ``patience`` clocks passed after the last
+// pixel. Returns the number of frames published. With ``live`` the markers are read as they are found instead.
+EXPORT int64_t sensor_run(Sensor* sensor, const uint32_t* pixels, int64_t count, const uint8_t* idle, int64_t* fed,
+                          int64_t publications, int64_t patience, int live) {
+    Run run{pixels, count, idle, fed};
+    run.wait = idle && count ? idle[0] : 0;
+    sensor->run = &run;
+    sensor->words.clear();
+    sensor->markers.clear();
+    int64_t published = 0, last = sensor->clock;
+    uint32_t seen = sensor->read(LIVE) & 0xFFFF;
+    while (run.next < count || (published < publications && sensor->clock - last < patience)) {
+        if (run.next < count) last = sensor->clock;
+        if (live) {
+            sensor->watch_live(seen);
+        } else if (sensor->dut.irq) {
+            sensor->read_published();
+            published++;
+        } else {
+            sensor->tick();
+        }
+    }
+    sensor->run = nullptr;
+    return published;
+}
+
+EXPORT int64_t sensor_clock(Sensor* sensor) { return sensor->clock; }
+EXPORT int64_t sensor_word_count(Sensor* sensor) { return sensor->words.size(); }
+EXPORT const uint32_t* sensor_words(Sensor* sensor) { return sensor->words.data(); }
+EXPORT int64_t sensor_marker_count(Sensor* sensor) { return sensor->markers.size(); }
+EXPORT const int64_t* sensor_markers(Sensor* sensor) { return sensor->markers.data(); }
+
+}  // extern "C"

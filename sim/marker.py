@@ -1,0 +1,134 @@
+"""The marker as a solid thing: its shape, its pose, and where a pinhole camera sees its vertices.
+
+Pixels: (0, 0) is the centre of the upper left pixel, x right, y down.  Camera frame: x right, y down,
+z forward, millimetres.  Marker frame: origin at the marker's centre, x from V1 to V2, y from V1 to V4, z into
+the marker, so an upright marker that faces the camera has the identity rotation.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SIDE_MM = 113.0
+INNER = (0.15, 0.45)
+"""The white inner square's limits in x and in y, in sides, with the origin at V1."""
+
+
+@dataclass(frozen=True)
+class Lens:
+    """A pinhole without distortion: focal lengths and principal point, all in pixels."""
+
+    fx: float = 640.0
+    fy: float = 640.0
+    cx: float = 319.5
+    cy: float = 239.5
+
+    def __post_init__(self):
+        if not (self.fx > 0 and self.fy > 0):
+            raise ValueError(f"Focal lengths must be positive, not {self.fx!r} and {self.fy!r}")
+
+    @classmethod
+    def of_frame(cls, width, height):
+        """The default camera scaled to a frame of this size in pixels: f = width, axis through its middle."""
+        return cls(float(width), float(width), (width - 1) / 2, (height - 1) / 2)
+
+    def project(self, points_mm):
+        """Pixels (N, 2) of points (N, 3) in the camera frame, in millimetres, z > 0."""
+        x, y, z = np.asarray(points_mm, dtype=float).T
+        return np.stack([self.fx * x / z + self.cx, self.fy * y / z + self.cy], axis=1)
+
+
+class UnseenMarkerError(ValueError):
+    """The marker, or its quiet zone, is behind the camera or turns its back to it."""
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerPose:
+    """Where one marker is: X_camera = R X_marker + t.
+
+    Parameters
+    ----------
+    R : (3, 3)
+        Proper rotation, orthonormal within 1e-6.
+    t_mm : (3,)
+        The marker's centre in the camera frame, millimetres.
+    side_mm : float
+        Side of the black square, millimetres, positive.
+
+    Raises
+    ------
+    ValueError
+        Not a rotation, or side not positive.
+    UnseenMarkerError
+        Not wholly before the camera, or its back to the camera.
+    """
+
+    R: np.ndarray
+    t_mm: np.ndarray
+    side_mm: float = SIDE_MM
+
+    def __post_init__(self):
+        object.__setattr__(self, "R", np.array(self.R, dtype=float))
+        object.__setattr__(self, "t_mm", np.array(self.t_mm, dtype=float))
+        if self.R.shape != (3, 3) or self.t_mm.shape != (3,):
+            raise ValueError(f"R must be (3, 3) and t_mm (3,), not {self.R.shape} and {self.t_mm.shape}")
+        if not np.allclose(self.R @ self.R.T, np.eye(3), atol=1e-6) or np.linalg.det(self.R) < 0:
+            raise ValueError("R must be a proper rotation: orthonormal, determinant +1")
+        if not self.side_mm > 0:
+            raise ValueError(f"Side must be positive, not {self.side_mm!r} mm")
+        if not self.R[:, 2] @ self.t_mm > 0:
+            raise UnseenMarkerError("Marker must show its face to the camera")
+        self._corners_mm(0.0, 1.0)
+
+    def _corners_mm(self, low, high):
+        """Corners (4, 3) in the camera frame, clockwise, of the square with these limits in sides from V1."""
+        plane = np.array([[low, low, 0.5], [high, low, 0.5], [high, high, 0.5], [low, high, 0.5]]) - 0.5
+        corners = self.side_mm * plane @ self.R.T + self.t_mm
+        if not np.all(corners[:, 2] > 0):
+            raise UnseenMarkerError("Marker and quiet zone must be wholly before the camera")
+        return corners
+
+    def outline(self, lens, low=0.0, high=1.0):
+        """Pixels (4, 2), clockwise, of the square with these limits in x and in y, in sides from V1.
+
+        (0, 1) is the marker itself, ``INNER`` its inner square, (-q, 1 + q) its quiet zone of q sides.
+        """
+        return lens.project(self._corners_mm(low, high))
+
+    def vertices(self, lens):
+        """True vertices V1 V2 V3 V4 (4, 2) in pixels, not rounded."""
+        return self.outline(lens)
+
+
+def rotation(axis, angle_deg):
+    """Rotation (3, 3) about the unit vector ``axis`` (3,) by Rodrigues' formula, right-handed, in degrees."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]], dtype=float)
+    angle = np.radians(angle_deg)
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def marker_pose(center_px, side_px, tilt_deg, tilt_axis_deg, roll_deg, lens, side_mm=SIDE_MM):
+    """Marker whose centre is seen at ``center_px``, turned by its roll first and tilted then.
+
+    Parameters
+    ----------
+    center_px : (2,)
+        Where its centre projects, pixels.
+    side_px : float
+        Length of the projected side if it faced the camera: Z = fx * side_mm / side_px, positive.
+    tilt_deg : float
+        Angle between the marker's normal and the camera's axis (not the line of sight), 0 to below 90.
+    tilt_axis_deg : float
+        Direction of the axis of the tilt in the picture's plane, from x towards y.
+    roll_deg : float
+        Turn about the marker's normal, clockwise in the picture.
+    """
+    if not side_px > 0:
+        raise ValueError(f"Projected side must be positive, not {side_px!r} px")
+    if not 0 <= tilt_deg < 90:
+        raise ValueError(f"Tilt must be 0 to below 90 degrees, not {tilt_deg!r}")
+    z = lens.fx * side_mm / side_px
+    t_mm = [(center_px[0] - lens.cx) * z / lens.fx, (center_px[1] - lens.cy) * z / lens.fy, z]
+    axis = [np.cos(np.radians(tilt_axis_deg)), np.sin(np.radians(tilt_axis_deg)), 0.0]
+    return MarkerPose(rotation(axis, tilt_deg) @ rotation([0, 0, 1], roll_deg), t_mm, side_mm)
