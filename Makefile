@@ -14,7 +14,7 @@ help: ## Show this list
 demo: .venv/installed ## Render a scene, let the hardware find its markers, and show what it says
 	$(PY) -m sim demo $(ARGS)
 
-run: frame-given .venv/installed ## Let the hardware look at your picture: FRAME=picture [JSON=file] [OUT=file]
+run: frame-given .venv/installed ## Let the hardware look at your picture: FRAME=picture [JSON=file] [OUT=folder]
 	$(PY) -m sim run "$(FRAME)" $(if $(JSON),--json "$(JSON)") $(if $(OUT),--out "$(OUT)") $(ARGS)
 
 test: .venv/installed ## Run all tests but the exhaustive ones, JOBS=2 at a time

@@ -2,7 +2,14 @@
 
 from dataclasses import dataclass
 
-__all__ = ["DIRECTIONS", "SensorConfig"]
+__all__ = ["BUILDS", "DIRECTIONS", "SMALLEST_FRAME", "SensorConfig"]
+
+#: Least number of columns and of rows of a sensor's frame: the stores rely on a frame that takes longer than the
+#: pipelines.
+SMALLEST_FRAME = 16
+
+#: Largest frames (width, height) of the builds that simulations choose from, the smaller first.
+BUILDS = ((640, 480), (1920, 1080))
 
 #: The sixteen directions (a, b) in which segmentation keeps each component's furthest pixel, clockwise in the image
 #: from +x: the pixel with the largest a x + b y. Neighbours are at most 26.6 degrees apart, so every vertex of a
@@ -20,7 +27,7 @@ class SensorConfig:
     Parameters
     ----------
     width, height : int
-        Largest frame in pixels, 1 to 4096 each. The run-time frame size is a register and may be smaller.
+        Largest frame in pixels, 16 to 4096 each. The run-time frame size is a register and may be smaller.
     blob_depth : int
         Components kept per frame. Power of two.
     corner_depth : int
@@ -45,8 +52,9 @@ class SensorConfig:
 
     def __post_init__(self):
         for name in ("width", "height"):
-            if not 1 <= getattr(self, name) <= 4096:
-                raise ValueError(f"{name} must be 1 to 4096 pixels, not {getattr(self, name)!r}")
+            size = getattr(self, name)
+            if not isinstance(size, int) or not SMALLEST_FRAME <= size <= 4096:
+                raise ValueError(f"{name} must be {SMALLEST_FRAME} to 4096 pixels, not {size!r}")
         for name in ("blob_depth", "corner_depth", "marker_depth", "candidate_depth"):
             depth = getattr(self, name)
             if depth < 2 or depth & (depth - 1):

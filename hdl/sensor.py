@@ -4,7 +4,7 @@ from amaranth import Module
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
-from hdl.config import SensorConfig
+from hdl.config import SMALLEST_FRAME, SensorConfig
 from hdl.pixels import CameraPixel, unstalled
 from hdl.regs.bank import RegisterBank
 from hdl.regs.bus import RegisterBus
@@ -22,10 +22,7 @@ from hdl.vision.segmentation.segmentation import Segmentation
 from hdl.vision.size_filter import SizeFilter
 from hdl.vision.threshold import Threshold
 
-__all__ = ["SMALLEST_FRAME", "Sensor", "sensor"]
-
-#: Least number of columns and of rows: the stores rely on a frame that takes longer than the pipelines.
-SMALLEST_FRAME = 16
+__all__ = ["Sensor", "sensor"]
 
 
 def _kept(layout, names):

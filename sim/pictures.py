@@ -11,13 +11,9 @@ import pathlib
 import cv2
 import numpy as np
 
-__all__ = ["BUILDS", "SMALLEST", "PictureError", "build_for", "read_picture", "write_picture"]
+from hdl.config import BUILDS, SMALLEST_FRAME
 
-BUILDS = ((640, 480), (1920, 1080))
-"""(width, height) of the sensors there are, pixels; a picture goes to the first that it fits."""
-
-SMALLEST = (16, 16)
-"""(width, height) of the least frame, pixels."""
+__all__ = ["PictureError", "build_for", "read_picture", "write_picture"]
 
 
 class PictureError(ValueError):
@@ -67,7 +63,7 @@ def _rgb(image):
 
 def build_for(width, height):
     """(width, height) of the smallest build that takes a picture, or None if none does."""
-    if width < SMALLEST[0] or height < SMALLEST[1]:
+    if min(width, height) < SMALLEST_FRAME:
         return None
     return next((build for build in BUILDS if width <= build[0] and height <= build[1]), None)
 
@@ -94,7 +90,7 @@ def read_picture(path):
         raise PictureError(f"cannot take {path}: its pixels are {image.dtype}, not 8 or 16 bits a channel")
     height, width = rgb.shape[:2]
     if build_for(width, height) is None:
-        limits = " to ".join(f"{size[0]} x {size[1]}" for size in (SMALLEST, BUILDS[-1]))
+        limits = f"{SMALLEST_FRAME} x {SMALLEST_FRAME} to {BUILDS[-1][0]} x {BUILDS[-1][1]}"
         raise PictureError(f"cannot take {path}: {width} x {height} pixels, a frame has {limits}")
     return rgb
 

@@ -63,6 +63,8 @@ SMALL = {
     "hand with run joins top with run": "..###.. .#...#. #.#.#.# #.#.#.# ..#.#.. .#...#.",
     "hand without run joins": "#.#.#.#.# ........# #.#.#.#.# .#.#.#.#. #...#...#",
     "two trees grow together": "#...#...# .#.#.#.#. ..#...#.. ...#.#... ....#....",
+    "run loses its first mark in the clock that reads it": "..###### ..#....# ..#..#.# #.#.#.## ........",
+    "the same, and goes on": "..###### ..#....# ..#..#.# #.#.#.## #.#.#.##",
     "one pixel": "#",
     "one column": "# . # # .",
     "one row": "##.#.###",

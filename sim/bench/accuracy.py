@@ -3,7 +3,7 @@
 from sim.bench.registry import at_least, at_most, measurement
 
 
-@measurement("found_rate", "Markers found in random frames", "", target=at_least(0.99))
+@measurement("found_rate", "Markers found in random frames", "", target=at_least(0.98))
 def found_rate(bench):
     """Part of the rendered markers that were found, in whatever order."""
     return bench.score.found_rate
@@ -21,13 +21,13 @@ def wrong_order(bench):
     return bench.score.wrong_order
 
 
-@measurement("vertex_rms_px", "Vertices of found markers, rms", "px", target=at_most(1.5))
+@measurement("vertex_rms_px", "Vertices of found markers, rms", "px", target=at_most(1.3))
 def vertex_rms_px(bench):
     """Root mean square distance of the vertices from the true ones."""
     return bench.score.rms_px
 
 
-@measurement("vertex_p95_px", "Vertices of found markers, 95 % within", "px", target=at_most(2.5))
+@measurement("vertex_p95_px", "Vertices of found markers, 95 % within", "px", target=at_most(2.0))
 def vertex_p95_px(bench):
     """What 95 % of the vertices are within."""
     return bench.score.p95_px

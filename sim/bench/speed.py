@@ -2,7 +2,7 @@
 
 import time
 
-from sim.bench.registry import measurement
+from sim.bench.registry import at_least, measurement
 from sim.scene import random_marker_scene, render
 
 
@@ -14,13 +14,13 @@ def _frames_per_s(sensor, settings, count):
     return count / (time.perf_counter() - start)
 
 
-@measurement("rtl_frames_per_s", "Verilog on this machine, 640 x 480", "frames/s", needs_rtl=True)
+@measurement("rtl_frames_per_s", "Verilog on this machine, 640 x 480", "frames/s", target=at_least(2), needs_rtl=True)
 def rtl_frames_per_s(bench):
     """Frames a second of the emitted Verilog."""
     return _frames_per_s(bench.rtl, bench.settings, 10)
 
 
-@measurement("model_frames_per_s", "Model on this machine, 640 x 480", "frames/s")
+@measurement("model_frames_per_s", "Model on this machine, 640 x 480", "frames/s", target=at_least(10))
 def model_frames_per_s(bench):
     """Frames a second of the model."""
     return _frames_per_s(bench.model, bench.settings, 20)

@@ -7,7 +7,7 @@ import functools
 
 import numpy as np
 
-from hdl.config import DIRECTIONS
+from hdl.config import BUILDS, DIRECTIONS
 from hdl.pixels import ItemKind, RgbPixel
 from hdl.vision.blob import Support, blob_layout
 from hdl.vision.suppression import corner_item
@@ -18,9 +18,6 @@ from sim.models.segmentation import BLOB
 from sim.results import BOX, Settings
 
 __all__ = ["blobs_of", "corners_of", "rtl_blobs", "rtl_corners"]
-
-#: Largest frames of the two builds.
-BUILDS = ((640, 480), (1920, 1080))
 
 
 @functools.cache

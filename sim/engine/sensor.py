@@ -6,12 +6,12 @@ import pathlib
 import numpy as np
 
 from hdl import emit
-from hdl.config import SensorConfig
+from hdl.config import SMALLEST_FRAME, SensorConfig
 from hdl.pixels import CameraPixel
 from hdl.regs.bus import READ_LATENCY
 from hdl.regs.map import sensor_map
-from hdl.sensor import SMALLEST_FRAME
-from sim.engine.build import EngineError, build_library
+from hdl.vision.framer import SETTLING
+from sim.engine.build import EngineError, build_library, cached_verilog
 from sim.engine.packing import pack
 from sim.models.fast import CORNER
 from sim.models.matching import MARKER
@@ -20,6 +20,7 @@ from sim.results import BOX, FrameResult, Settings
 __all__ = ["RtlSensor"]
 
 _DRIVER = pathlib.Path(__file__).with_name("sensor.cpp")
+_TOP = pathlib.Path(__file__).with_name("sensor_top.v")
 _HEADER_WORDS = 6  # frame, blobs, small blobs, corners, markers, candidates dropped
 #: Clocks after the last pixel in which every frame must be published: a full queue of candidates takes 6,000.
 _PATIENCE = 100_000
@@ -76,7 +77,8 @@ class RtlSensor:
         self.map = sensor_map(self.config)
         self._offset = {item.name: item.offset for item in (*self.map.registers, *self.map.windows)}
         sources = {"driver.cpp": _DRIVER.read_text(), "registers.h": self._header()}
-        path = build_library(emit.emit(emit.TOP, width, height), emit.TOP, sources)
+        verilog = cached_verilog(emit.TOP, width, height) + _TOP.read_text()
+        path = build_library(verilog, _TOP.stem, sources)
         self._library = ctypes.CDLL(str(path))
         for name, result in (
             ("new", ctypes.c_void_p), ("words", ctypes.POINTER(ctypes.c_uint32)), ("word_count", ctypes.c_int64),
@@ -101,7 +103,10 @@ class RtlSensor:
             ("IRQ_PUBLISHED", "irq_status", "published"),
         ):
             values[name] = 1 << self.map.register(register).field(field).low
-        values |= {"READ_LATENCY": READ_LATENCY, "SOF_BIT": CameraPixel.as_shape()["sof"].offset}
+        values |= {
+            "READ_LATENCY": READ_LATENCY + 1,  # sensor_top.v has a register on the way
+            "SOF_BIT": CameraPixel.as_shape()["sof"].offset,
+        }
         return "#pragma once\n" + "".join(f"#define {name} {value}\n" for name, value in values.items())
 
     def reset(self):
@@ -123,7 +128,8 @@ class RtlSensor:
         return {field.name: word >> field.low & (1 << field.width) - 1 for field in entry.fields}
 
     def configure(self, settings, columns, rows):
-        """Write every setting; it holds for frames that start later."""
+        """Write every setting; it holds for frames that start later. Waits until the last frame is settled."""
+        self._library.sensor_idle(self._handle, ctypes.c_int64(self.config.width + SETTLING))
         self.write("control", enable=1, bright=settings.bright)
         self.write("frame_size", columns=columns, rows=rows)
         self.write("threshold", level=settings.threshold)

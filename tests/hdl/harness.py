@@ -53,6 +53,7 @@ BUILD_ARGS = {
         "--x-initial",
         "fast",
         "--no-assert",
+        "--no-public-flat-rw",  # The runner asks for every signal: that alone would take minutes to compile.
         "-CFLAGS",
         "-O1",
     ],
@@ -107,11 +108,12 @@ def _build(name, verilog, simulator, size):
     final = OUT / "cocotb" / f"{name}-{size}-{simulator}-{digest}"
     with locked(final) as scratch:
         if scratch is not None:
-            source, log = scratch / "dut.v", scratch / "build.log"
+            source, ports, log = (scratch / file for file in ("dut.v", "ports.vlt", "build.log"))
             source.write_text(verilog)
+            ports.write_text(f'`verilator_config\npublic_flat_rw -module "{name}" -var "*"\n')
             try:
                 get_runner(simulator).build(
-                    sources=[source],
+                    sources=[source, ports] if simulator == "verilator" else [source],
                     hdl_toplevel=name,
                     build_dir=scratch,
                     build_args=BUILD_ARGS[simulator],

@@ -98,9 +98,7 @@ def stack_beats(images):
     count, rows, columns = images.shape
     index = np.arange(rows * columns)
     marks = {"first": index == 0, "eol": index % columns == columns - 1, "last": index == index[-1]}
-    return pack(
-        BinaryPixel, foreground=images.ravel(), **{name: np.tile(mark, count) for name, mark in marks.items()}
-    )
+    return pack(BinaryPixel, foreground=images.ravel(), **{name: np.tile(mark, count) for name, mark in marks.items()})
 
 
 def find_stack(images):
@@ -140,9 +138,7 @@ def check_stack(engine, images, idle=None, note=""):
     items = blobs[is_item]
     index = first_difference(items, model)
     if index is not None:
-        compare(
-            items, model, lambda: f"{note} frame {model_frame[index]}:\n{draw(images[model_frame[index]])}"
-        )
+        compare(items, model, lambda: f"{note} frame {model_frame[index]}:\n{draw(images[model_frame[index]])}")
     assert not len(run["overflow"]), note
 
 

@@ -29,9 +29,7 @@ SIZES = [
 
 def pauses(frames, cuts, clocks):
     """``clocks`` idle clocks before each frame."""
-    lengths = [
-        frame.size if cut is None else min(cut, frame.size) for frame, cut in zip(frames, cuts, strict=True)
-    ]
+    lengths = [frame.size if cut is None else min(cut, frame.size) for frame, cut in zip(frames, cuts, strict=True)]
     idle = np.zeros(sum(lengths), dtype=np.int64)
     idle[np.cumsum([0, *lengths[:-1]])] = clocks
     return idle
@@ -61,8 +59,7 @@ def test_cut_everywhere(rows, columns):
 @pytest.mark.parametrize("chance", [0, 0.5])
 @pytest.mark.parametrize(
     "rows, columns, build",
-    [(*size, (8, 8)) for size in SIZES if min(size) > 2]
-    + [(4, 5, (5, 4)), (17, 33, (64, 64)), (17, 33, (33, 17))],
+    [(*size, (8, 8)) for size in SIZES if min(size) > 2] + [(4, 5, (5, 4)), (17, 33, (64, 64)), (17, 33, (33, 17))],
 )
 def test_cut_at_random(rows, columns, build, chance):
     """Also again and again, after one pixel, and at the end of a row."""
@@ -81,8 +78,7 @@ def test_cut_at_random(rows, columns, build, chance):
         )
         choice = random.integers(0, 8, count)
         cuts = [
-            int(places[kind, index]) if kind < 5 and index < count - 1 else None
-            for index, kind in enumerate(choice)
+            int(places[kind, index]) if kind < 5 and index < count - 1 else None for index, kind in enumerate(choice)
         ]
         length = len(binary_beats(frames, cut=cuts))
         idle = random_idle(length, chance, seed) + pauses(frames, cuts, 2 if columns == 3 else 0)

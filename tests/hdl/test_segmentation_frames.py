@@ -67,9 +67,7 @@ def check_latency(engine, frames):
 
 @pytest.mark.parametrize("density", [0.05, 0.3, 0.5, 0.7])
 def test_latency(density):
-    check_latency(
-        segmentation(64, 64), list(noise(np.random.default_rng(3), 256, 64, density).reshape(4, 64, 64))
-    )
+    check_latency(segmentation(64, 64), list(noise(np.random.default_rng(3), 256, 64, density).reshape(4, 64, 64)))
 
 
 def test_latency_of_directed_patterns():

@@ -65,12 +65,8 @@ def test_every_image_of_three_rows_of_seven(shard):
 @pytest.mark.parametrize("width, height", [(1, 1), (1, 5), (2, 2), (3, 3), (5, 4), (6, 3)])
 def test_tight_builds(width, height):
     """Builds that are no wider than their frames."""
-    images = noise(np.random.default_rng([1, width, height]), 400 * height, width, 0.5).reshape(
-        -1, height, width
-    )
-    check_stack(
-        segmentation(width, height), images, idle_between(height, width, 400, 2), note=f"{width}x{height}"
-    )
+    images = noise(np.random.default_rng([1, width, height]), 400 * height, width, 0.5).reshape(-1, height, width)
+    check_stack(segmentation(width, height), images, idle_between(height, width, 400, 2), note=f"{width}x{height}")
 
 
 @pytest.mark.parametrize("columns", [1, 3])

@@ -1,5 +1,6 @@
 """What found, wrong order and false mean, on cases made by hand; and the list of measurements."""
 
+import dataclasses
 import json
 
 import numpy as np
@@ -87,7 +88,8 @@ def test_every_agreed_figure_is_registered_once():
 def test_verdict():
     clocks = MEASUREMENTS["clocks_per_frame"]
     assert clocks.verdict(307200) is True and clocks.verdict(307201) is False and clocks.verdict(None) is None
-    assert MEASUREMENTS["model_frames_per_s"].verdict(1.0) is None
+    without_target = dataclasses.replace(clocks, target=None)
+    assert without_target.verdict(307200) is None
 
 
 def test_photographs_have_no_markers():
@@ -99,7 +101,9 @@ def test_bench_with_the_model(sim, tmp_path):
     result = sim("bench", "--engine", "model", "--frames", "12", "--json", tmp_path / "bench.json")
     values = json.loads((tmp_path / "bench.json").read_text())
     assert set(values) == KEYS | {"missed", "engine", "frames"}
-    assert result.code == 0 and values["missed"] == []
+    few_or_slow = {"model_frames_per_s", "vertex_rms_px", "vertex_p95_px"}  # 12 frames judge neither
+    assert not set(values["missed"]) - few_or_slow
+    assert result.code == bool(values["missed"])
     assert values["clocks_per_frame"] is None and values["found_rate"] == 1
     assert "not measured" in result.out
 

@@ -13,9 +13,11 @@ from hdl.vision.segmentation.nesting import Mark, operation_layout, slot_count
 
 __all__ = ["Features"]
 
-#: Operations that may wait. A frame of H rows brings at most (H + 1) (width + 1) / 2 runs, merges and finishes, that
-#: is one in two clocks, and no two steps in a row bring two; the deepest queue seen in the tests holds four.
-QUEUE_DEPTH = 8
+#: Operations that may wait. The runs of a row and the components that begin below them share no column, so a frame of
+#: W x H pixels brings at most (H + 1) (W + 1) / 2 runs, merges and finishes and one mark: on average one in two clocks,
+#: and no two steps in a row bring two. In a search for the worst among 6,000 periodic and random patterns of all widths
+#: up to 64, six places overflowed only with frames of one column, and seven never.
+QUEUE_DEPTH = 16
 
 
 class Features(wiring.Component):

@@ -26,8 +26,10 @@ class Segmentation(wiring.Component):
         pixels -> scan -> steps -> nesting -> operations -> features -> components
                  1 row of bits     2 rows of run records    a slot per open component
 
-    Throughput: one pixel a clock, no blanking between rows or frames, any content. Latency: 10 clocks from the step
-    that ends a component to its report.
+    Throughput: one pixel a clock, no blanking between rows or frames, any content. Only an endless series of frames of
+    one row, of one column or of 3 x 2 pixels would need a pause, of 2 clocks a frame, because every frame has an END.
+    A narrower frame must not come before the one before is flushed: W + 10 clocks after its last pixel, which the
+    framer sees to. Latency: 10 clocks from the step that ends a component to its report.
 
     Memory at 640 x 480: 640 bits of pixels, 7 kbit of run records, 6 kbit of stack, 3 kbit of slot numbers and
     324 x 470 bits of features.
@@ -42,7 +44,7 @@ class Segmentation(wiring.Component):
     i : In(unstalled(BinaryPixel))
     o : Out(unstalled(blob_layout(width, height)))
     overflow : Out(1)
-        An internal queue overflowed; stays until reset. Cannot happen.
+        An internal queue overflowed; stays until reset. Cannot happen but in that endless series.
 
     Model: :func:`sim.models.segmentation.find_blobs`. Source: the paper's section 4.2 replaced; see the module
     :mod:`hdl.vision.segmentation.nesting` for the idea.

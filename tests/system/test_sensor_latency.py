@@ -1,0 +1,33 @@
+"""How soon a marker can be read: within 8 lines of its last row, whatever else is in the frame."""
+
+import numpy as np
+import pytest
+
+from sim.photos import fill_frame
+from sim.scene import random_marker_scene, render
+from tests.shapes import marker_frame
+from tests.system.test_sensor import ModelSensor, photos, scene, sensor
+
+LINES = 8
+FRAMES = {
+    "14 of 40 px end in one row": lambda: marker_frame(480, 640, [(3 + 45 * k, 100, 40, 0) for k in range(14)]),
+    "14 of 40 px end in the last row of all": lambda: marker_frame(
+        480, 640, [(3 + 45 * k, 439, 40, 90 * k) for k in range(14)]
+    ),
+    "quiet zone ends at the last row": lambda: marker_frame(480, 640, [(300, 436, 40, 0), (20, 380, 90, 0)]),
+    "five at random": lambda: scene(3, count=5, side_px=(40, 130)),
+    "five on a photograph": lambda: render(
+        random_marker_scene(31, count=5, side_px=(50, 120), background=fill_frame(photos()["coffee_cut"]))
+    ).image,
+}
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_latency(name):
+    frame = FRAMES[name]()
+    rows, columns = frame.shape[:2]
+    measured = sensor().measure_latency(frame)
+    (model,) = ModelSensor().run([frame])
+    assert len(model.markers) and np.array_equal(measured["markers"], model.markers), name
+    latency = measured["vertices_latency_clocks"]
+    assert latency.min() > 0 and latency.max() <= LINES * columns, f"{name}: {latency.tolist()} clocks"
