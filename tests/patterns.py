@@ -7,7 +7,7 @@ transposed and inverted forms. Foreground is True.
 import cv2
 import numpy as np
 
-__all__ = ["DENSITIES", "directed", "draw", "noise", "parse", "periodic", "smoothed", "variants"]
+__all__ = ["DENSITIES", "directed", "draw", "nested", "noise", "parse", "periodic", "smoothed", "variants"]
 
 DENSITIES = (0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.75, 0.9)
 

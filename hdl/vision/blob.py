@@ -86,7 +86,7 @@ def blob_layout(width, height):
             "gap_area": area,
             "gap_sum_x": sum_x,
             "gap_sum_y": sum_y,
-            "euler": signed(bits_for(width * height // 4) + 1),
+            "euler": signed(bits_for(width * height // 2) + 1),
             "extremes": data.StructLayout(
                 {f"e{k}": Support(d, width=width, height=height).shape for k, d in enumerate(DIRECTIONS)}
             ),

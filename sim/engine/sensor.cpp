@@ -94,15 +94,22 @@ struct Sensor {
         write(CONTROL, control);
     }
 
-    void watch_live(uint32_t& seen) {
-        const uint32_t live = read(LIVE);
-        const uint32_t known = (live & 0xFFFF) == (seen & 0xFFFF) ? seen >> 16 : 0;
-        for (uint32_t k = known; k < live >> 16; k++) {
+    void read_markers(uint32_t window, uint32_t frame, uint32_t from, uint32_t count) {
+        for (uint32_t k = from; k < count; k++) {
             std::vector<uint32_t> marker;
-            read(LIVE_WINDOW + 4 * MARKER_WORDS * k, MARKER_WORDS, marker);
-            markers.insert(markers.end(), {clock, live & 0xFFFF, static_cast<int64_t>(k)});
+            read(window + 4 * MARKER_WORDS * k, MARKER_WORDS, marker);
+            markers.insert(markers.end(), {clock, frame, static_cast<int64_t>(k)});
             markers.insert(markers.end(), marker.begin(), marker.end());
         }
+    }
+
+    void watch_live(uint32_t& seen) {
+        const uint32_t live = read(LIVE), number = live & 0xFFFF, before = seen & 0xFFFF;
+        // A frame may end right behind its last markers, before a poll tells of them: then they are published.
+        if (number != before && (read(FRAME) & 0xFFFF) == before) {
+            read_markers(MARKER_WINDOW, before, seen >> 16, read(MARKERS) & 0xFFFF);
+        }
+        read_markers(LIVE_WINDOW, number, number == before ? seen >> 16 : 0, live >> 16);
         seen = live;
     }
 };

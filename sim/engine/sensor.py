@@ -226,6 +226,7 @@ class RtlSensor:
                 f"{self.config.width} x {self.config.height} pixels, not {columns} x {rows}"
             )
         self.configure(settings, columns, rows)
+        self.write("irq_status", published=1)  # What an earlier run did not wait for.
         pixels = np.concatenate([camera_pixels(frame) for frame in frames])
         idle = np.zeros(len(pixels), np.uint8)
         idle[:: rows * columns] = gap
@@ -246,6 +247,7 @@ class RtlSensor:
         """How long the markers of one frame take until they can be read.
 
         Each marker is read from the live window as soon as polling the register LIVE shows it; a poll takes 2 clocks.
+        Markers that the frame's end overtakes are read from the published frame.
 
         Returns
         -------

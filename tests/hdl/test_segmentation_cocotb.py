@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from sim.engine import random_idle
+from sim.engine import StreamEngine, random_idle
 from tests.hdl.harness import assert_same, binary_beats, cocotb_run
-from tests.hdl.test_segmentation import check_run, segmentation
+from tests.hdl.test_segmentation import check_run
 from tests.patterns import directed, noise, variants
 
 WIDTH, HEIGHT = 33, 17
@@ -12,11 +12,11 @@ WIDTH, HEIGHT = 33, 17
 
 def check_cocotb(simulator, frames, *, cuts=None, idle=None, reset_at=(), good=None):
     """Play frames; those from ``good`` on are checked against the model, all of them against the engine."""
-    engine = segmentation(WIDTH, HEIGHT)
+    # A new engine, as marks carry what the feature memories hold, and a reset does not clear these.
+    engine = StreamEngine("segmentation", WIDTH, HEIGHT)
     stimulus = {"i": (binary_beats(frames, cut=cuts), idle)}
     options = {"drain_clocks": WIDTH + 40, "reset_at": reset_at}
     run = cocotb_run("segmentation", simulator, stimulus, width=WIDTH, height=HEIGHT, **options)
-    engine.reset()
     assert_same(run, engine.run(stimulus, **options))
     if reset_at:
         after = run["o"].clock > run.resets[-1]

@@ -7,7 +7,7 @@ from hdl.pixels import ItemKind
 from sim.engine import random_idle
 from tests.hdl.harness import binary_beats
 from tests.hdl.test_segmentation import check, check_run, decode, run_frames, segmentation
-from tests.patterns import directed, noise, periodic
+from tests.patterns import directed, nested, noise, periodic
 
 SIZES = [
     (1, 2),
@@ -127,6 +127,15 @@ def test_cut_after_row_0_many_times():
         ):
             frames = [frame] * 50 + [~frame, frame]
             check(segmentation(64, 64), frames, cuts=[cut] * 50 + [None, None], note=f"{name} cut at {cut}")
+
+
+@pytest.mark.parametrize(("width", "height"), [(9, 7), (33, 17)])
+def test_deepest_nesting_and_cuts_within_it(width, height):
+    """As many open components as fit; what a cut leaves on the stack must not add up."""
+    bowls = nested(height, width, height)
+    for cut in (2 * width - 1, 2 * width - width // 2, 2 * width - width // 4):
+        frames = [bowls, bowls] * 60 + [bowls[:, ::-1]]
+        check(segmentation(width, height), frames, cuts=[cut, None] * 60 + [None], note=f"cut at {cut}")
 
 
 def test_no_abort_for_a_frame_that_was_complete_or_in_row_0():

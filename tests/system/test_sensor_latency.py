@@ -9,12 +9,18 @@ from tests.shapes import marker_frame
 from tests.system.test_sensor import ModelSensor, photos, scene, sensor
 
 LINES = 8
+
+
+def row_of_14(y):
+    """Markers of 40 px that end in one row."""
+    return marker_frame(480, 640, [(3 + 45 * k, y, 40, 90 * k) for k in range(14)])
+
+
 FRAMES = {
-    "14 of 40 px end in one row": lambda: marker_frame(480, 640, [(3 + 45 * k, 100, 40, 0) for k in range(14)]),
-    "14 of 40 px end in the last row of all": lambda: marker_frame(
-        480, 640, [(3 + 45 * k, 439, 40, 90 * k) for k in range(14)]
-    ),
-    "quiet zone ends at the last row": lambda: marker_frame(480, 640, [(300, 436, 40, 0), (20, 380, 90, 0)]),
+    "14 end in one row": lambda: row_of_14(100),
+    "14 and their quiet zones end at the last row": lambda: row_of_14(436),
+    "14 end in the last row but one": lambda: row_of_14(439),
+    "one quiet zone ends at the last row": lambda: marker_frame(480, 640, [(300, 436, 40, 0)]),
     "five at random": lambda: scene(3, count=5, side_px=(40, 130)),
     "five on a photograph": lambda: render(
         random_marker_scene(31, count=5, side_px=(50, 120), background=fill_frame(photos()["coffee_cut"]))
@@ -25,9 +31,8 @@ FRAMES = {
 @pytest.mark.parametrize("name", FRAMES)
 def test_latency(name):
     frame = FRAMES[name]()
-    rows, columns = frame.shape[:2]
     measured = sensor().measure_latency(frame)
     (model,) = ModelSensor().run([frame])
     assert len(model.markers) and np.array_equal(measured["markers"], model.markers), name
     latency = measured["vertices_latency_clocks"]
-    assert latency.min() > 0 and latency.max() <= LINES * columns, f"{name}: {latency.tolist()} clocks"
+    assert latency.min() > 0 and latency.max() <= LINES * frame.shape[1], f"{name}: {latency.tolist()} clocks"

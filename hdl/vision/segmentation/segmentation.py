@@ -26,13 +26,14 @@ class Segmentation(wiring.Component):
         pixels -> scan -> steps -> nesting -> operations -> features -> components
                  1 row of bits     2 rows of run records    a slot per open component
 
-    Throughput: one pixel a clock, no blanking between rows or frames, any content. Only an endless series of frames of
-    one row, of one column or of 3 x 2 pixels would need a pause, of 2 clocks a frame, because every frame has an END.
+    Throughput: one pixel a clock, no blanking between rows or frames, any content. Only an endless series of tiny
+    frames (of one row, of up to 3 columns, or up to 4 x 4 and 5 x 2 pixels) needs a pause, of 2 clocks a frame, because
+    every frame has an END.
     A narrower frame must not come before the one before is flushed: W + 10 clocks after its last pixel, which the
     framer sees to. Latency: 10 clocks from the step that ends a component to its report.
 
     Memory at 640 x 480: 640 bits of pixels, 7 kbit of run records, 6 kbit of stack, 3 kbit of slot numbers and
-    324 x 470 bits of features.
+    324 x 487 bits of features.
 
     Parameters
     ----------

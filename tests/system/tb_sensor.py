@@ -1,0 +1,104 @@
+"""Cocotb testbench of the whole sensor: a camera that never waits and software that reads what is published.
+
+It runs inside the simulator and plays what test_sensor_cocotb.py wrote into STREAM_FOLDER. Inputs change and
+outputs are read when the clock falls, so no race can make two simulators differ.
+"""
+
+import os
+import pathlib
+import signal
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import FallingEdge
+
+_NOTHING = (0, 0, 0, 0)  # address, read, write, write_data
+
+
+class _Port:
+    """An input that is driven only when it changes."""
+
+    def __init__(self, handle):
+        self._handle, self._value = handle, None
+
+    def drive(self, value):
+        if value != self._value:
+            self._handle.value = self._value = value
+
+
+class _Software:
+    """Sets the sensor up and reads what it publishes; ``run`` yields a bus cycle for every clock."""
+
+    def __init__(self, dut, plan):
+        self._irq, self._data = dut.irq, dut.bus__read_data
+        self._setup = plan["setup"].tolist()
+        self._offset = dict(zip(plan["names"].tolist(), plan["offsets"].tolist(), strict=True))
+        self._windows = [tuple(row) for row in plan["windows"].tolist()]  # name of the count, window, words
+        self._control, self._hold, self._held, self._published = plan["bits"].tolist()
+        self.words, self.frames = [], []
+
+    def _write(self, offset, value):
+        yield offset >> 2, 0, 1, value
+
+    def _read(self, offset, count=1):
+        """Consecutive words, one a clock; data come two clocks after their address."""
+        words = []
+        for k in range(count + 1):
+            yield ((offset >> 2) + k, 1, 0, 0) if k < count else _NOTHING
+            if k:
+                words.append(int(self._data.value))
+        return words
+
+    def _frame(self):
+        offset = self._offset
+        yield from self._write(offset["control"], self._control | self._hold)
+        while not (yield from self._read(offset["status"]))[0] & self._held:
+            pass
+        yield from self._write(offset["irq_status"], self._published)
+        counts = {}
+        start = len(self.words)
+        for name in ("frame", "blobs", "blobs_small", "corners", "markers", "candidates_dropped"):
+            (counts[name],) = yield from self._read(offset[name])
+            self.words.append(counts[name])
+        for name, window, words in self._windows:
+            self.words += yield from self._read(offset[window], int(words) * (counts[name] & 0xFFFF))
+        self.frames.append(len(self.words) - start)
+        yield from self._write(offset["control"], self._control)
+
+    def run(self):
+        for offset, value in self._setup:
+            yield from self._write(offset, value)
+        while True:
+            if int(self._irq.value):
+                yield from self._frame()
+            else:
+                yield _NOTHING
+
+
+@cocotb.test()
+async def play(dut):
+    folder = pathlib.Path(os.environ["STREAM_FOLDER"])
+    plan = np.load(folder / "plan.npz")
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.alarm(int(plan["timeout"]))  # Ends the simulator even if it never returns to Python.
+
+    resets = set(plan["resets"].tolist())
+    payload, valid, rst = (_Port(getattr(dut, name)) for name in ("camera__payload", "camera__valid", "rst"))
+    bus = [_Port(getattr(dut, f"bus__{name}")) for name in ("address", "read", "write", "write_data")]
+    software = _Software(dut, plan)
+    for port in (payload, valid, rst, *bus):
+        port.drive(0)
+    Clock(dut.clk, 10, unit="ns").start(start_high=False)
+    falling, program = FallingEdge(dut.clk), None
+    for clock, pixel in enumerate(plan["pixels"].tolist()):  # -1: none
+        await falling
+        rst.drive(clock in resets)
+        if clock in resets:
+            program = software.run()
+        valid.drive(pixel >= 0)
+        if pixel >= 0:
+            payload.drive(pixel)
+        for port, value in zip(bus, _NOTHING if clock in resets else next(program), strict=True):
+            port.drive(value)
+    np.savez(folder / "captured.npz", words=np.array(software.words, np.uint32), frames=software.frames)
