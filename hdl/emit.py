@@ -57,6 +57,10 @@ BLOCKS = {
     "matching": _block("hdl.vision.matching.matching:Matching", **_FRAME, depth=64),
     "size_filter": _block("hdl.vision.size_filter:SizeFilter", **_FRAME),
     "frame_counter": _block("hdl.stores.frame_counter:FrameCounter"),
+    "publisher": _block("hdl.stores.sensor_stores:publisher", **_FRAME),
+    "blob_store": _block("hdl.stores.sensor_stores:blob_store", **_FRAME),
+    "corner_store": _block("hdl.stores.sensor_stores:corner_store", **_FRAME),
+    "marker_store": _block("hdl.stores.sensor_stores:marker_store", **_FRAME),
     "register_bank": _block("hdl.regs.bank:sensor_bank", **_FRAME),
     TOP: _block("hdl.sensor:sensor", **_FRAME),
 }

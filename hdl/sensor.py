@@ -1,7 +1,7 @@
 """The whole sensor: camera pixels and a register bus in, results behind the bus and an interrupt out. Wiring only."""
 
 from amaranth import Module
-from amaranth.lib import data, wiring
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from hdl.config import SMALLEST_FRAME, SensorConfig
@@ -9,25 +9,17 @@ from hdl.pixels import CameraPixel, unstalled
 from hdl.regs.bank import RegisterBank
 from hdl.regs.bus import RegisterBus
 from hdl.regs.map import sensor_map
+from hdl.stores import sensor_stores
 from hdl.stores.frame_counter import FrameCounter
-from hdl.stores.frame_store import FrameStore
-from hdl.stores.publisher import Publisher
-from hdl.vision.blob import blob_layout
-from hdl.vision.corners import Corners, corner_item
+from hdl.vision.corners import Corners
 from hdl.vision.framer import Framer
 from hdl.vision.grey import Grey
-from hdl.vision.matching.geometry import marker_layout
 from hdl.vision.matching.matching import Matching
 from hdl.vision.segmentation.segmentation import Segmentation
 from hdl.vision.size_filter import SizeFilter
 from hdl.vision.threshold import Threshold
 
 __all__ = ["Sensor", "sensor"]
-
-
-def _kept(layout, names):
-    """The fields of ``layout`` that a store keeps."""
-    return data.StructLayout({name: layout[name].shape for name in names})
 
 
 class Sensor(wiring.Component):
@@ -79,9 +71,7 @@ class Sensor(wiring.Component):
         m.submodules.size_filter = size_filter = SizeFilter(**sizes)
         m.submodules.corners = corners = Corners(**sizes)
         m.submodules.matching = matching = Matching(**sizes, depth=config.candidate_depth)
-        m.submodules.publisher = publisher = Publisher(
-            blob=blob_layout(**sizes), corner=corner_item(**sizes), marker=marker_layout(**sizes)
-        )
+        m.submodules.publisher = publisher = sensor_stores.publisher(**sizes)
 
         # Pixels.
         connect(m, flipped(self.bus), registers.bus)
@@ -156,21 +146,18 @@ class Sensor(wiring.Component):
 
     def _connect_stores(self, m, registers, publisher):
         sizes = {"width": self._config.width, "height": self._config.height}
-        vertices = ("v1", "v2", "v3", "v4", "box_min", "box_max", "area", "gap_area")
-        blob = _kept(blob_layout(**sizes), ("x_min", "y_min", "x_max", "y_max", "area"))
-        corner = _kept(corner_item(**sizes), ("x", "y", "score", "arc", "bright"))
-        marker = _kept(marker_layout(**sizes), vertices)
         stores = {}
-        for name, stream, layout, depth, counts, overflow in (
-            ("blob", publisher.o_blob, blob, self._config.blob_depth, registers.blobs, "blob_overflow_set"),
-            ("corner", publisher.o_corner, corner, self._config.corner_depth, registers.corners, "corner_overflow_set"),
-            ("marker", publisher.o_marker, marker, self._config.marker_depth, registers.markers, "marker_overflow_set"),
-        ):  # fmt: skip
-            m.submodules[f"{name}_store"] = store = stores[name] = FrameStore(shape=layout, depth=depth)
+        for name, stream, depth, counts, overflow in (
+            ("blob", publisher.o_blob, self._config.blob_depth, registers.blobs, "blob_overflow_set"),
+            ("corner", publisher.o_corner, self._config.corner_depth, registers.corners, "corner_overflow_set"),
+            ("marker", publisher.o_marker, self._config.marker_depth, registers.markers, "marker_overflow_set"),
+        ):
+            store = stores[name] = getattr(sensor_stores, f"{name}_store")(**sizes, depth=depth)
+            m.submodules[f"{name}_store"] = store
             m.d.comb += [
                 store.i_valid.eq(stream.valid),
                 store.i_kind.eq(stream.payload.kind),
-                *(store.i[field].eq(stream.payload[field]) for field, _ in layout),
+                *(store.i[field].eq(stream.payload[field]) for field, _ in store.i.shape()),
                 counts.count.eq(store.count),
                 counts.dropped.eq(store.dropped),
                 getattr(registers.flags, overflow).eq(store.overflow),
@@ -202,7 +189,7 @@ class Sensor(wiring.Component):
             stores["marker"].read_addr.eq(registers.marker_window.index),
         ]
         for window in (registers.marker_window, registers.live_window):
-            for name in vertices:
+            for name, _ in item.shape():
                 register = getattr(window, name)
                 if name.endswith("area"):
                     m.d.comb += register.pixels.eq(item[name])

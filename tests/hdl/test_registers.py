@@ -182,4 +182,4 @@ def test_documents_are_the_same_on_every_run(tmp_path):
 def test_command_line_error(capsys):
     with pytest.raises(SystemExit):
         main(["--width", "0"])
-    assert "width must be 1 to 4096 pixels, not 0" in capsys.readouterr().err
+    assert "width must be 16 to 4096 pixels, not 0" in capsys.readouterr().err

@@ -89,7 +89,7 @@ DEEPEST = {
 
 
 def test_queue_has_room_to_spare(monkeypatch):
-    """Five of its eight words are enough for the worst frames known; with three, ``overflow`` tells."""
+    """Five of its words are enough for the worst frames known; with three, ``overflow`` tells."""
     overflowed = {}
     for depth in (3, 5):
         monkeypatch.setattr(features, "QUEUE_DEPTH", depth)

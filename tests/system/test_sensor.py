@@ -5,7 +5,7 @@ import functools
 import numpy as np
 import pytest
 
-from hdl.sensor import SMALLEST_FRAME
+from hdl.config import SMALLEST_FRAME
 from sim.engine import random_idle
 from sim.engine.sensor import RtlSensor, camera_pixels
 from sim.models.sensor import ModelSensor
@@ -38,6 +38,16 @@ def photos():
     return dict(photographs())
 
 
+def first_difference(got, wanted):
+    """Where two values of a field differ, in one line."""
+    if np.ndim(got) == 0:
+        return f"is {got}, should be {wanted}"
+    shared = min(len(got), len(wanted))
+    at = next((k for k in range(shared) if got[k] != wanted[k]), shared)
+    one, other = (items[at].tolist() if at < len(items) else "nothing" for items in (got, wanted))
+    return f"has {len(got)} items, should have {len(wanted)}; number {at} is {one}, should be {other}"
+
+
 def compare(results, frames, settings=Settings(), size=(640, 480), note=""):  # noqa: B008 - frozen
     """Every result is the model's. Returns those."""
     expected = ModelSensor(*size).run(frames, settings)
@@ -45,8 +55,8 @@ def compare(results, frames, settings=Settings(), size=(640, 480), note=""):  # 
     for index, (result, model) in enumerate(zip(results, expected, strict=True)):
         what = f"{note} frame {index}, {frames[index].shape} with {settings}"
         for name in differences(result, model):
-            got, wanted = getattr(result, name), getattr(model, name)
-            raise AssertionError(f"{what}: {name} is {got}, should be {wanted}")
+            wrong = first_difference(getattr(result, name), getattr(model, name))
+            raise AssertionError(f"{what}: {name} {wrong}")
     return expected
 
 
@@ -149,6 +159,14 @@ def test_sizes(build, columns, rows):
     frames = [scene(columns, columns, rows, count=3)] if large else []
     frames += [picture(random, rows, columns) for _ in range(1 if large else 6)]
     check(sensor(*build), frames, gap=0 if columns > 60 else 255, note=f"{columns}x{rows} in {build}")
+
+
+def test_markers_at_the_borders_of_a_frame_smaller_than_the_build():
+    """One that touches a border is none; a pixel away it is."""
+    places = [((d, 30), (110 - d, 30), (60, d), (60, 90 - d)) for d in (0, 1)]
+    frames = [marker_frame(120, 140, [(*place, 30, 0)]) for place in (*places[0], *places[1])]
+    expected = check(sensor(), frames, note="borders")
+    assert [len(result.markers) for result in expected] == [0] * 4 + [1] * 4
 
 
 def test_full_hd():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from hdl.config import SMALLEST_FRAME
 from hdl.pixels import CameraPixel
-from hdl.sensor import SMALLEST_FRAME
 from sim.engine import fields, random_idle
 from sim.engine.sensor import camera_pixels
 from sim.models.framer import framer

@@ -39,7 +39,7 @@ class Features(wiring.Component):
     i : In(operation_layout(width, height))
     o : Out(unstalled(blob_layout(width, height)))
     overflow : Out(1)
-        The queue was full and an operation was lost; stays until reset. Cannot happen.
+        Strobe: the queue was full and an operation was lost.
     """
 
     def __init__(self, *, width, height):
@@ -60,8 +60,7 @@ class Features(wiring.Component):
         layout = operation_layout(self._width, self._height)
         m.submodules.queue = queue = SyncFIFOBuffered(width=layout.size, depth=QUEUE_DEPTH)
         m.d.comb += [queue.w_data.eq(self.i), queue.w_en.eq(self.i_valid)]
-        with m.If(self.i_valid & ~queue.w_rdy):
-            m.d.sync += self.overflow.eq(1)
+        m.d.sync += self.overflow.eq(self.i_valid & ~queue.w_rdy)
 
         # Clock 0: choose the part of the operation at the head of the queue that is issued.
         operation = Signal(layout)

@@ -45,7 +45,7 @@ class Segmentation(wiring.Component):
     i : In(unstalled(BinaryPixel))
     o : Out(unstalled(blob_layout(width, height)))
     overflow : Out(1)
-        An internal queue overflowed; stays until reset. Cannot happen but in that endless series.
+        Strobe: an operation was lost. Cannot happen but in that endless series.
 
     Model: :func:`sim.models.segmentation.find_blobs`. Source: the paper's section 4.2 replaced; see the module
     :mod:`hdl.vision.segmentation.nesting` for the idea.
