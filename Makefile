@@ -26,6 +26,7 @@ verilog: .venv/installed ## Write the hardware as Verilog: build/out/rasterpose.
 
 lint: .venv/installed ## Check the sources with ruff, and their Verilog with Verilator and Icarus
 	$(PY) -m ruff check .
+	$(PY) -m ruff format --check .
 	$(PY) -m hdl.lint $(ARGS)
 
 bench: .venv/installed ## Measure accuracy, false alarms, speed and latency

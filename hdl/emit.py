@@ -115,13 +115,9 @@ def emit(name, width=640, height=480):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python -m hdl.emit", description="Write the blocks as Verilog.")
-    parser.add_argument(
-        "names", nargs="*", metavar="NAME", help=f"any of: {', '.join(BLOCKS)} (default: all)"
-    )
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of: {', '.join(BLOCKS)} (default: all)")
     parser.add_argument("--width", type=int, default=640, help="largest frame width in pixels (default: 640)")
-    parser.add_argument(
-        "--height", type=int, default=480, help="largest frame height in pixels (default: 480)"
-    )
+    parser.add_argument("--height", type=int, default=480, help="largest frame height in pixels (default: 480)")
     parser.add_argument(
         "--out",
         type=pathlib.Path,

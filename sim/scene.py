@@ -164,9 +164,7 @@ def render(scene):
     return Frame(np.clip(np.rint(image), 0, 255).astype(np.uint8), truth)
 
 
-def random_marker_scene(
-    seed, width=640, height=480, side_px=(40, 200), tilt_deg=(0, 60), count=1, **scene_kwargs
-):
+def random_marker_scene(seed, width=640, height=480, side_px=(40, 200), tilt_deg=(0, 60), count=1, **scene_kwargs):
     """Scene of ``count`` markers at random: every roll, every axis of tilt, everywhere in the frame.
 
     Quiet zones keep ``scene_place.MARGIN_PX`` from the border and each other.  ``side_px`` and ``tilt_deg``

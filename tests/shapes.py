@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-__all__ = ["DISTRACTORS", "marker_bitmap", "marker_frame", "marker_grid"]
+__all__ = ["DISTRACTORS", "kite_grid", "marker_bitmap", "marker_frame", "marker_grid"]
 
 SIDE, MARGIN = 100, 20
 _LOW, _HIGH = MARGIN, MARGIN + SIDE - 1
@@ -59,6 +59,23 @@ def marker_grid(random, rows, columns, sides):
         side = int(random.integers(sides[0], sides[1] + 1))
         markers.append((x + (pitch - side) // 2, y + (pitch - side) // 2, side, random.uniform(0, 360)))
     return marker_frame(rows, columns, markers)
+
+
+def kite_grid(random, rows, columns):
+    """A frame (rows, columns) uint8 of squares with one vertex pulled in, each with a hole where a marker has it."""
+    image = np.full((rows, columns), 255, np.uint8)
+    axes = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
+    for x, y in ((x, y) for x in range(40, columns - 39, 80) for y in range(40, rows - 39, 80)):
+        reach = np.full(4, 32)
+        reach[random.integers(4)] = random.integers(14, 26)
+        angle = random.uniform(0, 2 * np.pi)
+        cos, sin = np.cos(angle), np.sin(angle)
+        area = (reach[0] + reach[2]) * (reach[1] + reach[3]) / 2
+        hole = 0.4 * reach[0] * axes[0] + np.sqrt(0.09 * area / 2) * axes
+        for points, level in ((axes * reach[:, None], 0), (hole, 255)):
+            turned = np.rint(points @ [[cos, sin], [-sin, cos]] + (x, y))
+            cv2.fillPoly(image, [turned.astype(np.int32)], level)
+    return image
 
 
 def _polygon(points, hole):

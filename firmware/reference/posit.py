@@ -32,9 +32,7 @@ class Rows(NamedTuple):
 
 def solve_rows(image: Points, depth_ratios: tuple[float, ...]) -> Rows:
     """The rows that explain the image under the vertices' depth ratios Z_i / Z0."""
-    (x1, y1), (x2, y2), (x3, y3), (x4, y4) = (
-        (x * w, y * w) for (x, y), w in zip(image, depth_ratios, strict=True)
-    )
+    (x1, y1), (x2, y2), (x3, y3), (x4, y4) = ((x * w, y * w) for (x, y), w in zip(image, depth_ratios, strict=True))
     ix, iy = (-x1 + x2 + x3 - x4) / 4, (-x1 - x2 + x3 + x4) / 4
     jx, jy = (-y1 + y2 + y3 - y4) / 4, (-y1 - y2 + y3 + y4) / 4
     c = (jx * jx + jy * jy) - (ix * ix + iy * iy)

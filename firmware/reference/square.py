@@ -32,9 +32,7 @@ def multiply(a: Matrix, b: Matrix) -> Matrix:
 
 def spokes(rotation: Matrix) -> tuple[Vector, ...]:
     """The four vectors from the marker's centre to its vertices, in the camera's axes."""
-    return tuple(
-        tuple(row[0] * x + row[1] * y for row in rotation) for x, y in zip(VERTEX_X, VERTEX_Y, strict=True)
-    )
+    return tuple(tuple(row[0] * x + row[1] * y for row in rotation) for x, y in zip(VERTEX_X, VERTEX_Y, strict=True))
 
 
 def residuals_px(pose: UnitPose, image: Points, focal: tuple[float, float]) -> Points:

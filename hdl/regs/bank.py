@@ -54,9 +54,7 @@ def _register_ports(registers):
 
 
 def _window_ports(window):
-    return wiring.Signature(
-        {"index": Out(range(window.count)), "select": Out(1)} | _register_ports(window.registers)
-    )
+    return wiring.Signature({"index": Out(range(window.count)), "select": Out(1)} | _register_ports(window.registers))
 
 
 class RegisterBank(wiring.Component):

@@ -141,9 +141,7 @@ def _window(node):
     if len(node.array_dimensions) > 1 or not node.external:
         raise ValueError(f"{node.get_path()} must be external and have one dimension")
     if count < 2 or count & (count - 1) or stride & (stride - 1) or offset % (count * stride):
-        raise ValueError(
-            f"{node.get_path()} must have a power of two of items and of words, and an address to match"
-        )
+        raise ValueError(f"{node.get_path()} must have a power of two of items and of words, and an address to match")
     return Window(node.inst_name.lower(), offset, count, stride, _registers(node.children()))
 
 

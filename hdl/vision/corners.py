@@ -59,14 +59,16 @@ class Corners(wiring.Component):
     def __init__(self, *, width, height):
         check_size(width=width, height=height)
         self._width, self._height = width, height
-        super().__init__({
-            "i": In(unstalled(GreyPixel)),
-            "n": In(4),
-            "threshold": In(8),
-            "max_arc": In(5),
-            "suppress": In(1),
-            "o": Out(unstalled(corner_item(width, height))),
-        })
+        super().__init__(
+            {
+                "i": In(unstalled(GreyPixel)),
+                "n": In(4),
+                "threshold": In(8),
+                "max_arc": In(5),
+                "suppress": In(1),
+                "o": Out(unstalled(corner_item(width, height))),
+            }
+        )
 
     def elaborate(self, platform):
         m = Module()

@@ -208,14 +208,20 @@ class Fast(wiring.Component):
         is_darker = Cat(value[8] for value in difference)
         is_bright = Signal()
         m.d.comb += is_bright.eq((is_darker[:8] | is_darker[8:]).all())
-        beyond = registers("beyond", (Mux(value[8] == is_bright, value[:8] ^ is_bright.replicate(8), 0)
-                                      for value in difference))
+        beyond = registers(
+            "beyond", (Mux(value[8] == is_bright, value[:8] ^ is_bright.replicate(8), 0) for value in difference)
+        )
         on_side = registers("on_side", (bit == is_bright for bit in is_darker), 1)
         bright = registers("bright_2", [is_bright], 1)[0]
 
-        contrast = registers("contrast", (
-            side & (Cat(bright, value) >= Cat(1, held.threshold))
-            for side, value in zip(on_side, beyond, strict=True)), 1)
+        contrast = registers(
+            "contrast",
+            (
+                side & (Cat(bright, value) >= Cat(1, held.threshold))
+                for side, value in zip(on_side, beyond, strict=True)
+            ),
+            1,
+        )
         arc_8, has_arc = _longest_run(registers, contrast)
         best = _score(registers, beyond, is_even, is_long)
 

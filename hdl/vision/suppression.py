@@ -47,14 +47,16 @@ def corner_item(width, height):
 
     All but ``kind`` is meaningless with ``END`` and ``ABORT``.
     """
-    return data.StructLayout({
-        "kind": ItemKind,
-        "x": unsigned(bits_for(width - 1)),
-        "y": unsigned(bits_for(height - 1)),
-        "score": unsigned(8),  #: greatest threshold at which it is a corner
-        "arc": unsigned(5),  #: length of the longest contiguous arc, 9 to 16
-        "bright": unsigned(1),  #: the pixel is brighter than its arc
-    })
+    return data.StructLayout(
+        {
+            "kind": ItemKind,
+            "x": unsigned(bits_for(width - 1)),
+            "y": unsigned(bits_for(height - 1)),
+            "score": unsigned(8),  #: greatest threshold at which it is a corner
+            "arc": unsigned(5),  #: length of the longest contiguous arc, 9 to 16
+            "bright": unsigned(1),  #: the pixel is brighter than its arc
+        }
+    )
 
 
 class _Stored(data.Struct):
@@ -90,10 +92,12 @@ class Suppression(wiring.Component):
     def __init__(self, *, width, height):
         check_size(width=width, height=height)
         self._width = width
-        super().__init__({
-            "i": In(unstalled(Position)),
-            "o": Out(unstalled(corner_item(width, height))),
-        })
+        super().__init__(
+            {
+                "i": In(unstalled(Position)),
+                "o": Out(unstalled(corner_item(width, height))),
+            }
+        )
 
     def elaborate(self, platform):
         m = Module()
@@ -121,9 +125,15 @@ class Suppression(wiring.Component):
             m.d.sync += [waiting.eq(is_pulled), position.eq(pull.data)]
 
         # One step a clock: a position of the frame, or of the row below it, or the end of it.
-        context_shape = data.StructLayout({
-            "key": _KEY_BITS, "bright": 1, "suppress": 1, "is_top": 1, "column": range(self._width + 1),
-        })
+        context_shape = data.StructLayout(
+            {
+                "key": _KEY_BITS,
+                "bright": 1,
+                "suppress": 1,
+                "is_top": 1,
+                "column": range(self._width + 1),
+            }
+        )
         step, ends, aborts = Signal(), Signal(), Signal()
         key = Signal(_KEY_BITS)
         column, columns = Signal(range(self._width + 1)), Signal(range(self._width + 1))
@@ -209,14 +219,13 @@ class Suppression(wiring.Component):
             write.addr.eq(present.column),
             write.data.key.eq(present.key),
             write.data.bright.eq(present.bright),
-            write.data.leads.eq(
-                ~present.suppress | leads_row_3 & (present.is_top | (present.key > above.row_best))
-            ),
+            write.data.leads.eq(~present.suppress | leads_row_3 & (present.is_top | (present.key > above.row_best))),
             write.data.row_best.eq(row_best_3),
         ]
         is_item, is_corner = Signal(), above.key[-1]
-        m.d.comb += is_item.eq(valid[3] & ~present.is_top & is_corner & above.leads
-                               & (~present.suppress | (above.key >= row_best_3)))
+        m.d.comb += is_item.eq(
+            valid[3] & ~present.is_top & is_corner & above.leads & (~present.suppress | (above.key >= row_best_3))
+        )
 
         item, y = self.o.payload, Signal.like(self.o.payload.y)
         m.d.sync += self.o.valid.eq(is_item | ending[3] | aborting[3])

@@ -151,8 +151,9 @@ class Window(wiring.Component):
             write.addr.eq(shown_column),
             write.data.eq(Cat(tap[3, dy] for dy in range(3, -3, -1))),
             self.o.payload.centre.eq(tap[0, 0]),
-            Cat(getattr(self.o.payload, name) for name in ("inside", "scored", "first", "eol", "last", "cut"))
-            .eq(shown_marks),
+            Cat(getattr(self.o.payload, name) for name in ("inside", "scored", "first", "eol", "last", "cut")).eq(
+                shown_marks
+            ),
         ]
         m.d.comb += [self.o.payload.circle[k].eq(tap[offset]) for k, offset in enumerate(CIRCLE)]
         return m

@@ -27,9 +27,7 @@ SOURCES = (".py", ".rdl")
 #: Where products of builds go (``build/out``).
 OUT = pathlib.Path(__file__).parents[2] / "build" / "out"
 
-VERILATOR_FLAGS = shlex.split(
-    "--cc -O3 --x-assign fast --x-initial fast --no-assert -Wno-fatal --prefix Vdut --Mdir ."
-)
+VERILATOR_FLAGS = shlex.split("--cc -O3 --x-assign fast --x-initial fast --no-assert -Wno-fatal --prefix Vdut --Mdir .")
 # -fno-gnu-unique and hidden symbols keep the Verilator runtimes of several libraries in one process apart.
 COMPILER_FLAGS = shlex.split(
     "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-strict-aliasing -w "

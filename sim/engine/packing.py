@@ -80,9 +80,7 @@ def pack(layout, **arrays):
     leaves = {name: (offset, width, signed) for name, offset, width, signed, _ in _leaves(layout)}
     if leaves.keys() != arrays.keys():
         raise ValueError(f"Fields must be {', '.join(leaves)}, not {', '.join(arrays)}")
-    payload = np.zeros(
-        np.broadcast_shapes((1,), *(np.shape(array) for array in arrays.values())), dtype=np.uint64
-    )
+    payload = np.zeros(np.broadcast_shapes((1,), *(np.shape(array) for array in arrays.values())), dtype=np.uint64)
     for name, array in arrays.items():
         offset, width, signed = leaves[name]
         if offset + width > 64:
@@ -92,10 +90,6 @@ def pack(layout, **arrays):
         if array.size and not (low <= int(array.min()) and int(array.max()) <= high):
             raise ValueError(f"Field {name!r} must be in {low} to {high}")
         if array.dtype != np.uint64:
-            array = (
-                array.astype(np.int64).view(np.uint64)
-                if array.ndim
-                else np.uint64(int(array) & (1 << 64) - 1)
-            )
+            array = array.astype(np.int64).view(np.uint64) if array.ndim else np.uint64(int(array) & (1 << 64) - 1)
         payload |= (array & np.uint64((1 << width) - 1)) << np.uint64(offset)
     return payload

@@ -91,8 +91,7 @@ def make_plan(interface, inputs, config=None, *, drain_clocks=64, reset_at=()):
     due = leader[reset_at]
     resets = due + np.arange(len(due))
     beats = {
-        name: (clock + np.searchsorted(due, clock, side="right"), payload)
-        for name, (clock, payload) in beats.items()
+        name: (clock + np.searchsorted(due, clock, side="right"), payload) for name, (clock, payload) in beats.items()
     }
     leader = next(iter(beats.values()))[0] if beats else leader
     total += len(due)
@@ -105,9 +104,7 @@ def make_plan(interface, inputs, config=None, *, drain_clocks=64, reset_at=()):
             if not 0 <= int(value) < 1 << width:
                 raise ValueError(f"Setting {name!r} must fit in {width} bits, not {value!r}")
             if beat is not None and not 0 <= beat <= len(leader):
-                raise ValueError(
-                    f"Setting {name!r} must change at a beat from 0 to {len(leader)}, not {beat}"
-                )
+                raise ValueError(f"Setting {name!r} must change at a beat from 0 to {len(leader)}, not {beat}")
             clock = 0 if beat is None else int(ends[beat])
             changes.append((clock, settings[name], int(value)))
     changes.sort(key=lambda change: change[0])

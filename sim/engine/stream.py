@@ -202,8 +202,6 @@ class StreamEngine:
         count = self._library.engine_count(self._handle, index)
         if not count:
             return Captured(np.zeros((0, port.words), dtype=np.uint32), np.zeros(0, dtype=np.int64))
-        payload = np.ctypeslib.as_array(
-            self._library.engine_payload(self._handle, index), (count, port.words)
-        )
+        payload = np.ctypeslib.as_array(self._library.engine_payload(self._handle, index), (count, port.words))
         clock = np.ctypeslib.as_array(self._library.engine_clock(self._handle, index), (count,))
         return Captured(payload.copy(), clock.copy())

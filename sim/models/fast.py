@@ -18,9 +18,7 @@ CIRCLE = ((0, -3), (1, -3), (2, -2), (3, -1), (3, 0), (3, 1), (2, 2), (1, 3),
 BORDER = 3
 """Pixels along each border that never are corners."""
 
-CORNER = np.dtype(
-    [("x", np.int32), ("y", np.int32), ("score", np.uint8), ("arc", np.uint8), ("bright", np.bool_)]
-)
+CORNER = np.dtype([("x", np.int32), ("y", np.int32), ("score", np.uint8), ("arc", np.uint8), ("bright", np.bool_)])
 """One corner, as ``find_corners`` returns it."""
 
 
@@ -104,8 +102,7 @@ def fast(grey, n=10, threshold=20, max_arc=16):
     ring = [grey[BORDER + dy : height - BORDER + dy, BORDER + dx : width - BORDER + dx] for dx, dy in CIRCLE]
     for bright in (False, True):
         contrast = [
-            centre - np.minimum(pixel, centre) if bright else np.maximum(pixel, centre) - centre
-            for pixel in ring
+            centre - np.minimum(pixel, centre) if bright else np.maximum(pixel, centre) - centre for pixel in ring
         ]
         bits = np.zeros(centre.shape, dtype=np.uint16)
         for k in range(16):

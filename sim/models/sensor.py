@@ -42,9 +42,7 @@ class ModelSensor:
         blobs = every[large]
         boxes = np.zeros(len(blobs), BOX)
         boxes["box"], boxes["area"] = blobs["box"], blobs["area"]
-        corners = find_corners(
-            level, n=settings.fast_n, threshold=settings.fast_threshold, max_arc=settings.max_arc
-        )
+        corners = find_corners(level, n=settings.fast_n, threshold=settings.fast_threshold, max_arc=settings.max_arc)
         markers = find_markers(blobs, columns, rows, settings.marker_min_side)
 
         def kept(found, depth):

@@ -19,9 +19,7 @@ def test_camera_projects_as_opencv_does():
     points = np.random.default_rng(1).uniform(-60, 60, (20, 3))
     matrix = np.array([[600.0, 0, 310], [0, 500, 250], [0, 0, 1]])
     expected = cv2.projectPoints(points, turn, shift, matrix, None)[0][:, 0]
-    np.testing.assert_allclose(
-        camera.project(points, Pose(cv2.Rodrigues(turn)[0], shift, 0.0)), expected, atol=1e-9
-    )
+    np.testing.assert_allclose(camera.project(points, Pose(cv2.Rodrigues(turn)[0], shift, 0.0)), expected, atol=1e-9)
 
 
 def test_solver_agrees_with_numpy():

@@ -235,9 +235,7 @@ def test_classic_stop_rule():
         distances = np.linalg.norm(CAMERA.project(SQUARE, estimate.pose) - vertices, axis=1)
         assert distances.mean() / 800 < stop_error
         if estimate.iterations > 1:  # and one step earlier it was not yet so
-            before = estimate_pose(
-                vertices, method="classic", stop_error=0, max_iterations=estimate.iterations - 1
-            )
+            before = estimate_pose(vertices, method="classic", stop_error=0, max_iterations=estimate.iterations - 1)
             distances = np.linalg.norm(CAMERA.project(SQUARE, before.pose) - vertices, axis=1)
             assert distances.mean() / 800 >= stop_error
         counts.append(estimate.iterations)

@@ -33,9 +33,7 @@ def camera_beats(frames, *, cut=None):
     ``cut`` ends a frame after so many pixels: a number for all frames, or a list with a number or None for
     each.
     """
-    return _beats(
-        frames, cut, lambda frame, first, eol, last: pack(CameraPixel, **_colours(frame), sof=first, eol=eol)
-    )
+    return _beats(frames, cut, lambda frame, first, eol, last: pack(CameraPixel, **_colours(frame), sof=first, eol=eol))
 
 
 def rgb_beats(frames, *, cut=None):

@@ -64,9 +64,7 @@ BUILD_ARGS = {
 def missing(simulator):
     """Why a simulator cannot be used here, or None."""
     if simulator == "icarus":
-        return (
-            None if shutil.which("iverilog") else "iverilog not found: install Debian's iverilog to run these"
-        )
+        return None if shutil.which("iverilog") else "iverilog not found: install Debian's iverilog to run these"
     try:
         verilator_root()
     except EngineError as error:
@@ -160,8 +158,7 @@ def cocotb_run(
         seed=seed,
     )
     captured = {
-        port.name: Captured(arrays[f"payload.{port.name}"], arrays[f"clock.{port.name}"])
-        for port in interface.captured
+        port.name: Captured(arrays[f"payload.{port.name}"], arrays[f"clock.{port.name}"]) for port in interface.captured
     }
     return Run(captured, plan)
 
@@ -240,8 +237,7 @@ def assert_same(run, other):
     assert run.clocks == other.clocks
     for name, captured in run.items():
         rows, others = (
-            list(zip(beats.clock.tolist(), beats.payload.tolist(), strict=True))
-            for beats in (captured, other[name])
+            list(zip(beats.clock.tolist(), beats.payload.tolist(), strict=True)) for beats in (captured, other[name])
         )
         for index, (row, other_row) in enumerate(zip(rows, others, strict=False)):
             assert row == other_row, (

@@ -80,8 +80,7 @@ class PublisherBench(wiring.Component):
                 store.read_live.eq(self.reads.payload.live if stream == "marker" else 0),
             ]
             m.d.comb += [
-                seen[f"{stream}_{name}"].eq(getattr(store, name))
-                for name in ("count", "dropped", "live_count")
+                seen[f"{stream}_{name}"].eq(getattr(store, name)) for name in ("count", "dropped", "live_count")
             ]
             m.d.comb += [seen[f"{stream}_{name}"].eq(store.read_data[name]) for name in ("serial", "index")]
         return m
@@ -123,15 +122,9 @@ def make_schedule(seed, frames, *, row, broken=0.2, hold=0.3, corner_lag=2, mark
     late, and ``marker_delay`` the mean delay of matching per mark.
     """
     random = np.random.default_rng(seed)
-    s = types.SimpleNamespace(
-        **{stream: Events() for stream in STREAMS}, small=Events(), publications=[], marks=[]
-    )
+    s = types.SimpleNamespace(**{stream: Events() for stream in STREAMS}, small=Events(), publications=[], marks=[])
     start, number, after_mark, toggles = 3, 0, 0, np.cumsum(random.geometric(1 / (30 * row), 4 * frames))
-    holds = (
-        (lambda clock: bool(np.searchsorted(toggles, clock, side="right") % 2))
-        if hold
-        else (lambda clock: False)
-    )
+    holds = (lambda clock: bool(np.searchsorted(toggles, clock, side="right") % 2)) if hold else (lambda clock: False)
     for serial in range(frames):
         rows = int(random.choice([small_frames, small_frames + 3]))
         is_broken = random.random() < broken
@@ -148,9 +141,7 @@ def make_schedule(seed, frames, *, row, broken=0.2, hold=0.3, corner_lag=2, mark
             after_mark = clock + 1
         if length > 7 * row:
             latest = stop + corner_lag * row // 2
-            counts["corner"] = s.corner.items(
-                random, serial, int(random.integers(0, 14)), start + 7 * row, latest
-            )
+            counts["corner"] = s.corner.items(random, serial, int(random.integers(0, 14)), start + 7 * row, latest)
         corner_at = stop + int(random.integers(1, corner_lag * row + 2))
         corner_clock = s.corner.add(corner_at, ABORT if is_broken else END, serial)
         kind = ABORT
@@ -173,9 +164,7 @@ def make_schedule(seed, frames, *, row, broken=0.2, hold=0.3, corner_lag=2, mark
         start = stop
     s.clocks = max(events.beats[-1][0] for events in (s.blob, s.corner, s.marker)) + 20
     s.hold = (
-        [(clock, index % 2 ^ 1) for index, clock in enumerate(toggles.tolist()) if clock < s.clocks]
-        if hold
-        else []
+        [(clock, index % 2 ^ 1) for index, clock in enumerate(toggles.tolist()) if clock < s.clocks] if hold else []
     )
     s.complete = number
     return s
@@ -187,9 +176,7 @@ def stimulus(s, seed):
     given = {"reads": pack(READ, live=random.integers(0, 2, s.clocks), addr=addr)}
     for name in (*STREAMS, "small"):
         clock, kind, serial, index = np.array(getattr(s, name).beats or np.zeros((0, 4), int)).T
-        beats = (
-            pack(BEAT, kind=kind, serial=serial, index=index) if name != "small" else np.ones(len(clock), int)
-        )
+        beats = pack(BEAT, kind=kind, serial=serial, index=index) if name != "small" else np.ones(len(clock), int)
         given[name] = (beats, np.diff(clock, prepend=-1) - 1)
     return given, {"hold": [(0, 0), *s.hold]}
 

@@ -83,18 +83,12 @@ class BankBench(wiring.Component):
     def __init__(self, registers):
         self._map = registers
         self._fields = [(r.name, f) for r in registers.registers for f in r.fields]
-        settings = {
-            f"{name}.{f.name}": f.width for name, f in self._fields if f.behaviour == Behaviour.SETTING
-        }
+        settings = {f"{name}.{f.name}": f.width for name, f in self._fields if f.behaviour == Behaviour.SETTING}
         strobes = sum(f.behaviour in (Behaviour.FLAG, Behaviour.COUNTER) for _, f in self._fields)
         self.seen = data.StructLayout(
-            {"read_data": 32, "irq": 1}
-            | settings
-            | {f"{window.name}.select": 1 for window in registers.windows}
+            {"read_data": 32, "irq": 1} | settings | {f"{window.name}.select": 1 for window in registers.windows}
         )
-        super().__init__(
-            {"bus": In(unstalled(BUS)), "strobes": In(unstalled(strobes)), "o": Out(unstalled(self.seen))}
-        )
+        super().__init__({"bus": In(unstalled(BUS)), "strobes": In(unstalled(strobes)), "o": Out(unstalled(self.seen))})
 
     def elaborate(self, platform):
         m = Module()
@@ -159,10 +153,7 @@ class Model:
         for offset, items, words in WINDOWS.values() if len(self.fields) > 10 else ():
             item, word = divmod((address - offset) // 4, len(words))
             if offset <= address and item < items:
-                return sum(
-                    mixed(item, offset + 128 * word + low, width) << low
-                    for low, width in words[word].values()
-                )
+                return sum(mixed(item, offset + 128 * word + low, width) << low for low, width in words[word].values())
         total = 0
         for key, (offset, low, width, behaviour, _) in self.fields.items():
             if offset == address:
@@ -172,9 +163,7 @@ class Model:
 
     def interrupts(self):
         state = self.state
-        return any(
-            state.get(("irq_status", name)) and state["irq_enable", name] for name in ("published", "marker")
-        )
+        return any(state.get(("irq_status", name)) and state["irq_enable", name] for name in ("published", "marker"))
 
     def step(self, write, strobes):
         """``write`` is None or (byte address, data)."""

@@ -46,18 +46,14 @@ class StoreBench(wiring.Component):
                 block.i_kind.eq(beat.kind),
                 block.publish.eq(beat.publish),
             ]
-        m.d.comb += [
-            self.o.payload[name].eq(getattr(store, name)) for name in SEEN.members if name != "events"
-        ]
+        m.d.comb += [self.o.payload[name].eq(getattr(store, name)) for name in SEEN.members if name != "events"]
         return m
 
 
 def stimulus(count, seed, *, chances=(0.75, 0.15, 0.05, 0.05), idle=0.3):
     random = np.random.default_rng(seed)
     kind = random.choice([ITEM, END, ABORT, SKIP], count, p=chances)
-    beats = pack(
-        BEAT, kind=kind, publish=random.integers(0, 2, count), item=random.integers(0, 1 << 24, count)
-    )
+    beats = pack(BEAT, kind=kind, publish=random.integers(0, 2, count), item=random.integers(0, 1 << 24, count))
     idles = random_idle(count, idle, seed=seed + 1)
     clocks = int((idles + 1).sum())
     reads = pack(READ, live=random.integers(0, 2, clocks), addr=random.integers(0, DEPTH, clocks))

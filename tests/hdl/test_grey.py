@@ -37,9 +37,7 @@ def test_every_colour(engine, part):
 @pytest.mark.parametrize("rows, columns", [(1, 1), (1, 7), (7, 1), (24, 32)])
 def test_marks_and_idle_clocks(engine, idle, rows, columns):
     random = np.random.default_rng(5)
-    beats = rgb_beats(
-        random.integers(0, 256, (3, rows, columns, 3)), cut=[None, max(1, rows * columns // 2), None]
-    )
+    beats = rgb_beats(random.integers(0, 256, (3, rows, columns, 3)), cut=[None, max(1, rows * columns // 2), None])
     check(engine.run({"i": (beats, random_idle(len(beats), idle, seed=6))}), beats)
 
 

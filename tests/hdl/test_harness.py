@@ -136,9 +136,7 @@ def test_two_engines_of_one_block_do_not_share_state():
     beats = grey_beats([np.full((2, 2), 100)])
     for engine, level in zip(engines, (50, 150), strict=True):
         engine.run({"i": beats[:1]}, {"level": level, "bright": 0})
-    rows = [
-        fields(engine.run({"i": beats[1:]})["o"], BinaryPixel)["foreground"].tolist() for engine in engines
-    ]
+    rows = [fields(engine.run({"i": beats[1:]})["o"], BinaryPixel)["foreground"].tolist() for engine in engines]
     assert rows == [[0, 0, 0], [1, 1, 1]]
 
 
@@ -203,9 +201,7 @@ def test_processes_may_build_the_same_engine_at_once(tmp_path):
         for _ in range(3)
     ]
     assert [process.communicate()[0] for process in processes] == ["3\n"] * 3
-    assert (
-        len([path for path in (tmp_path / "engine").iterdir() if path.is_dir()]) == 2
-    )  # The block and the runtime.
+    assert len([path for path in (tmp_path / "engine").iterdir() if path.is_dir()]) == 2  # The block and the runtime.
 
 
 def test_unknown_bits_fail_a_run(simulator):

@@ -17,7 +17,7 @@ from sim.models.matching import MARKER, find_markers, is_candidate
 from sim.models.segmentation import find_blobs
 from tests.hdl.harness import assert_same, binary_beats, cocotb_run
 from tests.hdl.test_segmentation import decode, run_frames, segmentation
-from tests.shapes import DISTRACTORS, SIDE, marker_bitmap, marker_frame, marker_grid
+from tests.shapes import DISTRACTORS, SIDE, kite_grid, marker_bitmap, marker_frame, marker_grid
 
 ITEM, END, ABORT = (kind.value for kind in (ItemKind.ITEM, ItemKind.END, ItemKind.ABORT))
 LARGE, SMALL = (640, 480), (96, 72)
@@ -159,6 +159,13 @@ def test_distractors_in_all_turns_and_markers():
 def test_many_at_once(name, markers):
     frame = marker_frame(480, 640, markers) == 0
     assert check_frames(LARGE, [frame] * 2, note=name) == 2 * len(markers)
+
+
+def test_kites_that_are_nearly_squares():
+    """Only what its least vertex adds tells such a kite from a marker, on any side and near the limit."""
+    random = np.random.default_rng(6)
+    frames = [kite_grid(random, *LARGE[::-1]) == 0 for _ in range(3)]
+    assert 30 < check_frames(LARGE, frames, note="seed 6") < 3 * 48 - 30
 
 
 def test_random_large_frames():

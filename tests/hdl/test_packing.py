@@ -31,9 +31,7 @@ class Wide(data.Struct):
 def test_fields_of_every_kind():
     random = np.random.default_rng(4)
     bits = [int.from_bytes(random.bytes(24), "little") & (1 << 171) - 1 for _ in range(200)]
-    words = np.array(
-        [[value >> 32 * index & 0xFFFFFFFF for index in range(6)] for value in bits], dtype=np.uint32
-    )
+    words = np.array([[value >> 32 * index & 0xFFFFFFFF for index in range(6)] for value in bits], dtype=np.uint32)
     rows = fields(words, Wide)
     assert rows.dtype.names == ("low", "inner.x", "inner.y", "levels", "colour", "long")
 

@@ -47,10 +47,7 @@ def every_address(seed):
             np.repeat(np.arange(0, 0x100, 4), 16),
             random.integers(0, 1 << 14, 800) * 4,
             *(offset + 4 * np.arange(-4, 12) for offset, _, _ in WINDOWS.values()),
-            *(
-                offset + 4 * items * len(words) + 4 * np.arange(-12, 4)
-                for offset, items, words in WINDOWS.values()
-            ),
+            *(offset + 4 * items * len(words) + 4 * np.arange(-12, 4) for offset, items, words in WINDOWS.values()),
         ]
     )
 
@@ -157,9 +154,7 @@ def test_documents(tmp_path, capsys):
         checks.append(f"offsetof(rasterpose_t, {name.upper()}) == {offset}")
         for field, (low, width, behaviour, reset) in members.items():
             macro = f"RASTERPOSE__{name}__{field}".upper()
-            assert re.search(rf"^#define {macro}_bm {((1 << width) - 1) << low:#x}$", text, re.MULTILINE), (
-                macro
-            )
+            assert re.search(rf"^#define {macro}_bm {((1 << width) - 1) << low:#x}$", text, re.MULTILINE), macro
             if behaviour != "value":
                 assert re.search(rf"^#define {macro}_reset {reset:#x}$", text, re.MULTILINE), macro
     for name, (offset, _, words) in WINDOWS.items():
@@ -169,9 +164,7 @@ def test_documents(tmp_path, capsys):
     source = tmp_path / "check.c"
     source.write_text("\n".join(["#include <stddef.h>", '#include "rasterpose_regs.h"', *lines, ""]))
     compiler = shutil.which("gcc") or pytest.skip("gcc not found: install Debian's gcc to run this")
-    subprocess.run(
-        [compiler, "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", str(source)], check=True
-    )
+    subprocess.run([compiler, "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", str(source)], check=True)
 
 
 def test_documents_are_the_same_on_every_run(tmp_path):

@@ -39,13 +39,9 @@ class FilterBench(wiring.Component):
         wiring.connect(m, dut.o, wiring.flipped(self.o))
         area = self.i.payload.area
         filling = dut.i.payload.extremes.as_value()
-        m.d.comb += [
-            getattr(dut, name).eq(getattr(self, name)) for name in ("min_width", "min_height", "min_area")
-        ]
+        m.d.comb += [getattr(dut, name).eq(getattr(self, name)) for name in ("min_width", "min_height", "min_area")]
         m.d.comb += [dut.i.payload[name].eq(self.i.payload[name]) for name in BOX.members]
-        m.d.comb += [
-            dut.i.payload[name].eq(~area) for name in ("sum_x", "sum_y", "gap_area", "gap_sum_x", "gap_sum_y")
-        ]
+        m.d.comb += [dut.i.payload[name].eq(~area) for name in ("sum_x", "sum_y", "gap_area", "gap_sum_x", "gap_sum_y")]
         m.d.comb += [
             filling.eq(area.replicate(len(filling) // len(area))),
             dut.i.valid.eq(self.i.valid),
@@ -64,9 +60,7 @@ def beats_of(items):
     random = np.random.default_rng(3)
     kind, width, height, area = np.array(items).T
     x_min, y_min = random.integers(0, WIDTH - width + 1), random.integers(0, HEIGHT - height + 1)
-    return pack(
-        BOX, kind=kind, x_min=x_min, y_min=y_min, x_max=x_min + width - 1, y_max=y_min + height - 1, area=area
-    )
+    return pack(BOX, kind=kind, x_min=x_min, y_min=y_min, x_max=x_min + width - 1, y_max=y_min + height - 1, area=area)
 
 
 def check(run, items, limits):

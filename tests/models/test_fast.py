@@ -11,10 +11,7 @@ from sim import scene
 from sim.models.fast import CIRCLE, FastResult, fast, find_corners, suppress
 from sim.photos import photographs
 
-GREY = {
-    name: image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
-    for name, image in photographs()
-}
+GREY = {name: image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2GRAY) for name, image in photographs()}
 ORDER = ((0, -3), (1, -3), (2, -2), (3, -1), (3, 0), (3, 1), (2, 2), (1, 3),
          (0, 3), (-1, 3), (-2, 2), (-3, 1), (-3, 0), (-3, -1), (-2, -2), (-1, -3))  # fmt: skip
 SIZES = [(height, width) for height in range(1, 9) for width in range(1, 9)] + [

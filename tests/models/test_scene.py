@@ -239,9 +239,7 @@ def test_markers_are_inside_and_apart(seed):
         assert 40 <= 640 * 113 / marker.t_mm[2] <= 200
     for one, other in combinations([zone(marker, scene).astype(np.float32) for marker in scene.markers], 2):
         assert cv2.intersectConvexConvex(one, other)[0] == 0
-        gap = min(
-            -cv2.pointPolygonTest(a, p.tolist(), True) for a, b in ((one, other), (other, one)) for p in b
-        )
+        gap = min(-cv2.pointPolygonTest(a, p.tolist(), True) for a, b in ((one, other), (other, one)) for p in b)
         assert gap >= MARGIN_PX - 1e-3
 
 

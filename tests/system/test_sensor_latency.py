@@ -22,9 +22,9 @@ FRAMES = {
     "14 end in the last row but one": lambda: row_of_14(439),
     "one quiet zone ends at the last row": lambda: marker_frame(480, 640, [(300, 436, 40, 0)]),
     "five at random": lambda: scene(3, count=5, side_px=(40, 130)),
-    "five on a photograph": lambda: render(
-        random_marker_scene(31, count=5, side_px=(50, 120), background=fill_frame(photos()["coffee_cut"]))
-    ).image,
+    "five on a photograph": lambda: (
+        render(random_marker_scene(31, count=5, side_px=(50, 120), background=fill_frame(photos()["coffee_cut"]))).image
+    ),
 }
 
 

@@ -10,9 +10,7 @@ from tests.patterns import noise
 from tests.shapes import marker_frame
 from tests.system.test_sensor import compare, picture, scene, sensor
 
-TINY = Settings(
-    blob_min_width=0, blob_min_height=0, blob_min_area=0, fast_threshold=5, fast_n=9, marker_min_side=4
-)
+TINY = Settings(blob_min_width=0, blob_min_height=0, blob_min_area=0, fast_threshold=5, fast_n=9, marker_min_side=4)
 #: Registers that say something of the published frame.
 PUBLISHED = ("frame", "blobs", "blobs_small", "corners", "markers", "candidates_dropped")
 
