@@ -189,13 +189,13 @@ class Nesting(wiring.Component):
         ]
         m.d.sync += touches.eq(Mux(ends_run | self.cut, 0, touches + touch))
         with m.If(ends_run):
-            for descriptor_2 in (top_2, hand_2):
-                with m.If((owner_1 == Owner.TOP) if descriptor_2 is top_2 else (owner_1 == Owner.HAND)):
+            for place, extended in ((Owner.TOP, top_2), (Owner.HAND, hand_2)):
+                with m.If(owner_1 == place):
                     m.d.comb += [
-                        descriptor_2.has_run.eq(1),
-                        descriptor_2.earliest.eq(Mux(grown.has_run, grown.earliest, runs.index)),
-                        descriptor_2.latest.eq(runs.index),
-                        descriptor_2.end.eq(step.x),
+                        extended.has_run.eq(1),
+                        extended.earliest.eq(Mux(grown.has_run, grown.earliest, runs.index)),
+                        extended.latest.eq(runs.index),
+                        extended.end.eq(step.x),
                     ]
 
         # 3. The last run of a component in the row above takes it from the stack.
