@@ -12,6 +12,8 @@
 
 namespace {
 
+constexpr int64_t HELD_PATIENCE = 1'000'000;  // clocks; a full queue of candidates takes 6,000
+
 struct Run {
     const uint32_t* pixels;
     int64_t count;
@@ -81,9 +83,12 @@ struct Sensor {
         return one[0];
     }
 
-    void read_published() {
+    // False if what is published cannot be had: then the hardware is at fault.
+    bool read_published() {
         write(CONTROL, control | CONTROL_HOLD);
+        const int64_t start = clock;
         while (!(read(STATUS) & STATUS_HELD)) {
+            if (clock - start > HELD_PATIENCE) return false;
         }
         write(IRQ_STATUS, IRQ_PUBLISHED);
         const uint32_t blobs = read(BLOBS), corners = read(CORNERS), markers = read(MARKERS);
@@ -92,6 +97,7 @@ struct Sensor {
         read(CORNER_WINDOW, CORNER_WORDS * (corners & 0xFFFF), words);
         read(MARKER_WINDOW, MARKER_WORDS * (markers & 0xFFFF), words);
         write(CONTROL, control);
+        return true;
     }
 
     void read_markers(uint32_t window, uint32_t frame, uint32_t from, uint32_t count) {
@@ -159,7 +165,7 @@ EXPORT int64_t sensor_run(Sensor* sensor, const uint32_t* pixels, int64_t count,
         if (live) {
             sensor->watch_live(seen);
         } else if (sensor->dut.irq) {
-            sensor->read_published();
+            if (!sensor->read_published()) break;
             published++;
         } else {
             sensor->tick();

@@ -124,8 +124,12 @@ class RtlSensor:
     def read(self, register):
         """Fields of a register as a dict."""
         entry = self.map.register(register)
-        word = self._library.sensor_read(self._handle, entry.offset)
+        word = self.read_word(entry.offset)
         return {field.name: word >> field.low & (1 << field.width) - 1 for field in entry.fields}
+
+    def read_word(self, offset):
+        """The 32-bit word at a byte address, for instance in a window."""
+        return self._library.sensor_read(self._handle, ctypes.c_uint32(offset))
 
     def configure(self, settings, columns, rows):
         """Write every setting; it holds for frames that start later. Waits until the last frame is settled."""

@@ -44,6 +44,13 @@ def is_candidate(blobs, columns, rows, min_side):
     return inside & large & (blobs["euler"] <= 0) & (16 * gap >= filled) & (8 * gap <= filled)
 
 
+def _farthest(points, start, end):
+    """The points farthest from a line to its left (low) and right (high), and the lesser of their offsets."""
+    side = _cross(end - start, points - start)
+    low, high = int(np.argmin(side)), int(np.argmax(side))
+    return points[low], points[high], min(-side[low], side[high])
+
+
 def _quadrilateral(points):
     """A, B, C, D clockwise in the image: the largest quadrilateral of ``points`` (16, 2), by three searches.
 
@@ -51,19 +58,11 @@ def _quadrilateral(points):
     """
     opposite = points[: _N // 2] - points[_N // 2 :]
     k = int(np.argmax((opposite**2).sum(axis=1)))
-    a, c = points[k], points[k + _N // 2]
-    reach = []
-    for first in (True, False, True):
-        origin, line = (a, c - a) if first else (b, d - b)  # noqa: F821 - b and d come from the first search
-        side = _cross(line, points - origin)
-        low, high = int(np.argmin(side)), int(np.argmax(side))
-        reach += [-side[low], side[high]]
-        if first:
-            b, d = points[low], points[high]
-        else:
-            a, c = points[high], points[low]
+    b, d, _ = _farthest(points, points[k], points[k + _N // 2])
+    c, a, least_end = _farthest(points, b, d)
+    b, d, least_side = _farthest(points, a, c)
     area2 = _cross(c - a, d - b)
-    return None if 8 * min(reach[2:]) < 3 * area2 or area2 <= 0 else (a, b, c, d, area2)
+    return None if 8 * min(least_end, least_side) < 3 * area2 or area2 <= 0 else (a, b, c, d, area2)
 
 
 def match(blob):

@@ -59,13 +59,18 @@ class _Sink:
         return {f"clock.{self.name}": np.array(self._clocks, dtype=np.int64), f"payload.{self.name}": words}
 
 
-@cocotb.test()
-async def play(dut):
+def load_plan():
+    """(folder for the results, plan); from now on the simulator ends at the plan's timeout, come what may."""
     folder = pathlib.Path(os.environ["STREAM_FOLDER"])
     plan = np.load(folder / "plan.npz")
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.alarm(int(plan["timeout"]))  # Ends the simulator even if it never returns to Python.
+    return folder, plan
 
+
+@cocotb.test()
+async def play(dut):
+    folder, plan = load_plan()
     clocks = int(plan["clocks"])
     noise = junk(np.arange(clocks)).tolist()
     sources = [

@@ -4,14 +4,12 @@ It runs inside the simulator and plays what test_sensor_cocotb.py wrote into STR
 outputs are read when the clock falls, so no race can make two simulators differ.
 """
 
-import os
-import pathlib
-import signal
-
 import cocotb
 import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import FallingEdge
+
+from tests.hdl.tb_stream import load_plan
 
 _NOTHING = (0, 0, 0, 0)  # address, read, write, write_data
 
@@ -78,11 +76,7 @@ class _Software:
 
 @cocotb.test()
 async def play(dut):
-    folder = pathlib.Path(os.environ["STREAM_FOLDER"])
-    plan = np.load(folder / "plan.npz")
-    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.alarm(int(plan["timeout"]))  # Ends the simulator even if it never returns to Python.
-
+    folder, plan = load_plan()
     resets = set(plan["resets"].tolist())
     payload, valid, rst = (_Port(getattr(dut, name)) for name in ("camera__payload", "camera__valid", "rst"))
     bus = [_Port(getattr(dut, f"bus__{name}")) for name in ("address", "read", "write", "write_data")]

@@ -19,8 +19,7 @@ def words(rtl, window, count=None):
     """The first ``count`` words of a window, or all."""
     entry = next(item for item in rtl.map.windows if item.name == window)
     count = entry.stride // 4 * entry.count if count is None else count
-    read = rtl._library.sensor_read  # No Python code but a test wants single words.
-    return [read(rtl._handle, entry.offset + 4 * k) for k in range(count)]
+    return [rtl.read_word(entry.offset + 4 * k) for k in range(count)]
 
 
 def points(values):

@@ -28,7 +28,7 @@ class Candidates(wiring.Component):
 
     Half of the queue is for marks alone: a candidate that finds the other half full is lost (``dropped``), a mark
     always has room. An ABORT that would void nothing is not queued, so only complete frames add marks while no
-    candidate does; while 32 candidates are matched, 5,216 clocks, at most 21 frames of 16 x 16 can end.
+    candidate does; while 32 candidates are matched, 5,152 clocks, at most 21 frames of 16 x 16 can end.
 
     Memory: ``depth`` words of the candidate's size.
 

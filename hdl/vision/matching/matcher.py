@@ -31,7 +31,7 @@ class Matcher(wiring.Component):
        most 1/8 more, and the component with its gaps fills it (Pick's theorem gives the pixels of a polygon).
     3. The centre of the gaps lies within 3/64 of one diagonal, and 5/32 to 1/4 off the other: there is V1.
 
-    Time: 163 clocks at most for a candidate, 1 for a mark. Marks keep their place in the order.
+    Time: 161 clocks at most for a candidate, 1 for a mark. Marks keep their place in the order.
 
     Members
     -------

@@ -20,7 +20,7 @@ class Matching(wiring.Component):
 
         components -> candidates: filter and queue -> matcher: 5 searches, 4 tests -> markers
 
-    Throughput: a component a clock; a candidate in 163 clocks, so 14 markers that end in one row of 640 pixels are
+    Throughput: a component a clock; a candidate in 161 clocks, so 14 markers that end in one row of 640 pixels are
     all reported within 4 rows. Only what waits in the queue is limited, see :class:`Candidates`.
 
     Members
