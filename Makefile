@@ -4,7 +4,7 @@ PYTHON = python3.11
 JOBS = 2
 PY = .venv/bin/python
 
-.PHONY: help demo run frame-given test verilog lint bench exhaustive docs clean
+.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list
@@ -21,12 +21,17 @@ test: .venv/installed ## Run all tests but the exhaustive ones, JOBS=2 at a time
 	@echo "Icarus Verilog: $$(command -v iverilog || echo 'not found, so its tests are skipped (Debian: apt-get install iverilog)')"
 	$(PY) -m pytest -n $(JOBS) $(ARGS)
 
-verilog: .venv/installed ## Write the hardware as Verilog: build/out/rasterpose.v, blocks in build/out/verilog
-	$(PY) -m hdl.emit $(ARGS)
+verilog: .venv/installed ## Write the hardware as Verilog: build/out/rasterpose.v, rasterpose_system.v, blocks in build/out/verilog
+	$(PY) -m firmware.toolchain sensor
+	$(PY) -m hdl.emit --program build/out/firmware/sensor.bin $(ARGS)
+
+firmware: .venv/installed ## Build the firmware of the soft core and say how large it is: build/out/firmware
+	$(PY) -m firmware.toolchain $(ARGS)
 
 lint: .venv/installed ## Check the sources with ruff, and their Verilog with Verilator and Icarus
 	$(PY) -m ruff check .
 	$(PY) -m ruff format --check .
+	find firmware tests -name '*.[ch]' | xargs .venv/bin/clang-format --dry-run -Werror --style=file:firmware/.clang-format
 	$(PY) -m hdl.lint $(ARGS)
 
 bench: .venv/installed ## Measure accuracy, false alarms, speed and latency

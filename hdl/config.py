@@ -2,11 +2,14 @@
 
 from dataclasses import dataclass
 
-__all__ = ["BUILDS", "DIRECTIONS", "SMALLEST_FRAME", "SensorConfig"]
+__all__ = ["BUILDS", "CLOCK_HZ", "DIRECTIONS", "RAM_BYTES", "SECTIONS", "SMALLEST_FRAME", "SensorConfig"]
 
 #: Least number of columns and of rows of a sensor's frame: the stores rely on a frame that takes longer than the
 #: pipelines.
 SMALLEST_FRAME = 16
+
+#: Clocks in a second, the processor's memory in bytes, and the sections of its performance counter.
+CLOCK_HZ, RAM_BYTES, SECTIONS = 50_000_000, 32 * 1024, 4
 
 #: Largest frames (width, height) of the builds that simulations choose from, the smaller first.
 BUILDS = ((640, 480), (1920, 1080))

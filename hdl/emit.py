@@ -1,8 +1,10 @@
 """Verilog of every block: what a vendor tool, a simulator or a reader is given.
 
 ``python -m hdl.emit [NAME...] [--width W --height H] [--out build/out/verilog]`` writes one ``NAME.v`` per
-block, and the whole sensor (:data:`TOP`) into the folder above, as ``build/out/rasterpose.v``. Without names
-it writes them all.
+block, and into the folder above the whole sensor (:data:`TOP`) and the whole system (:data:`SYSTEM`), as
+``build/out/rasterpose.v`` and ``build/out/rasterpose_system.v``. The system's processor is not made here: it is
+written beside it as ``VexRiscv.v``. ``--program FILE.bin`` gives its memory what it starts with. Without names it
+writes them all.
 
 The text is Verilog-2001 without vendor cells. The module is called like the block; its ports are ``clk``,
 ``rst`` (synchronous, active high) and the signature's members joined by ``__``: ``i__valid``, ``i__payload``.
@@ -23,7 +25,7 @@ from amaranth import Const, Elaboratable, Value
 from amaranth.back import verilog
 from amaranth.lib import wiring
 
-__all__ = ["BLOCKS", "TOP", "build", "emit", "to_verilog"]
+__all__ = ["BLOCKS", "SYSTEM", "TOP", "build", "emit", "parts", "to_verilog", "words_of"]
 
 
 def _block(path, **sizes):
@@ -33,9 +35,9 @@ def _block(path, **sizes):
     """
     module, name = path.split(":")
 
-    def factory(width, height):
+    def factory(width, height, **arguments):
         frame = {"width": width, "height": height}
-        arguments = {key: frame.get(value, value) for key, value in sizes.items()}
+        arguments |= {key: frame.get(value, value) for key, value in sizes.items()}
         return getattr(importlib.import_module(module), name)(**arguments)
 
     return factory
@@ -43,6 +45,9 @@ def _block(path, **sizes):
 
 #: The block that is the whole sensor.
 TOP = "rasterpose"
+
+#: The block that is the sensor with its processor.
+SYSTEM = "rasterpose_system"
 
 #: For blocks whose constructor wants the size of the largest frame.
 _FRAME = {"width": "width", "height": "height"}
@@ -57,20 +62,33 @@ BLOCKS = {
     "matching": _block("hdl.vision.matching.matching:Matching", **_FRAME, depth=64),
     "size_filter": _block("hdl.vision.size_filter:SizeFilter", **_FRAME),
     "frame_counter": _block("hdl.stores.frame_counter:FrameCounter"),
+    "frame_times": _block("hdl.stores.frame_times:FrameTimes"),
     "publisher": _block("hdl.stores.sensor_stores:publisher", **_FRAME),
     "blob_store": _block("hdl.stores.sensor_stores:blob_store", **_FRAME),
     "corner_store": _block("hdl.stores.sensor_stores:corner_store", **_FRAME),
     "marker_store": _block("hdl.stores.sensor_stores:marker_store", **_FRAME),
     "register_bank": _block("hdl.regs.bank:sensor_bank", **_FRAME),
+    "uart": _block("hdl.peripherals.uart:Uart"),
+    "timer": _block("hdl.peripherals.timer:Timer"),
+    "performance": _block("hdl.peripherals.performance:PerformanceCounter"),
+    "watchdog": _block("hdl.peripherals.watchdog:Watchdog"),
+    "system_id": _block("hdl.peripherals.system_id:SystemId"),
+    "float_unit": _block("hdl.float.unit:FloatUnit"),
+    "lcd": _block("hdl.peripherals.lcd:Lcd"),
+    "ram": _block("hdl.system.ram:Ram"),
+    "decoder": _block("hdl.system.system:decoder"),
+    "register_bridge": _block("hdl.system.system:register_bridge"),
+    "register_hub": _block("hdl.system.system:register_hub", **_FRAME),
     TOP: _block("hdl.sensor:sensor", **_FRAME),
+    SYSTEM: _block("hdl.system.system:system", **_FRAME),
 }
 
 
-def build(name, width=640, height=480):
-    """The component called ``name``, for frames of up to ``width`` x ``height`` pixels."""
+def build(name, width=640, height=480, **arguments):
+    """The component called ``name``, for frames of up to ``width`` x ``height`` pixels, with further arguments."""
     if name not in BLOCKS:
         raise ValueError(f"No block is called {name!r}; there are {', '.join(sorted(BLOCKS))}")
-    return BLOCKS[name](width, height)
+    return BLOCKS[name](width, height, **arguments)
 
 
 class _SignalPorts(wiring.Signature):
@@ -108,9 +126,33 @@ def to_verilog(component, name):
     return verilog.convert(_Top(component), name, emit_src=False, strip_internal_attrs=True)
 
 
-def emit(name, width=640, height=480):
-    """Verilog of the block called ``name``."""
-    return to_verilog(build(name, width, height), name)
+def emit(name, width=640, height=480, **arguments):
+    """Verilog of the block called ``name``; ``arguments`` as for :func:`build`."""
+    return to_verilog(build(name, width, height, **arguments), name)
+
+
+def words_of(path):
+    """Words of a file that holds them little endian.
+
+    Raises
+    ------
+    ValueError
+        If its size is no multiple of 4 bytes.
+    """
+    content = pathlib.Path(path).read_bytes()
+    if len(content) % 4:
+        raise ValueError(f"{path} must hold words of 4 bytes, not {len(content)} bytes")
+    return [int.from_bytes(content[at : at + 4], "little") for at in range(0, len(content), 4)]
+
+
+def parts(name):
+    """What the block called ``name`` instantiates and others have written: file name -> Verilog, licence included."""
+    if name != SYSTEM:
+        return {}
+    from hdl.system.cpu import cpu_licence, cpu_verilog
+
+    licence = "".join(f"// {line}".rstrip() + "\n" for line in cpu_licence().splitlines())
+    return {"VexRiscv.v": f"{licence}\n{cpu_verilog()}"}
 
 
 def main(arguments=None):
@@ -125,16 +167,28 @@ def main(arguments=None):
         metavar="FOLDER",
         help="where to write the blocks (default: build/out/verilog)",
     )
+    parser.add_argument(
+        "--program",
+        type=pathlib.Path,
+        metavar="FILE.bin",
+        help="what the system's memory holds after configuration (default: zeros)",
+    )
     options = parser.parse_args(arguments)
+    try:
+        program = words_of(options.program) if options.program else ()
+    except (OSError, ValueError) as error:
+        parser.error(str(error))
     for name in options.names or BLOCKS:
         try:
-            text = emit(name, options.width, options.height)
+            contents = {"program": program} if name == SYSTEM else {}
+            text = emit(name, options.width, options.height, **contents)
         except (TypeError, ValueError) as error:
             parser.error(str(error))
-        path = (options.out.parent if name == TOP else options.out) / f"{name}.v"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print(path)
+        folder = options.out.parent if name in (TOP, SYSTEM) else options.out
+        folder.mkdir(parents=True, exist_ok=True)
+        for file, content in {f"{name}.v": text, **parts(name)}.items():
+            (folder / file).write_text(content)
+            print(folder / file)
     return 0
 
 

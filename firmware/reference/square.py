@@ -7,12 +7,13 @@ in millimetres once, at the end.
 import math
 from typing import NamedTuple
 
-Vector = tuple[float, float, float]
-Matrix = tuple[Vector, Vector, Vector]  # rows
-Points = tuple[tuple[float, float], ...]  # four normalised image points (X/Z, Y/Z), V1..V4
+import numpy as np
 
-VERTEX_X = (-1.0, 1.0, 1.0, -1.0)
-VERTEX_Y = (-1.0, -1.0, 1.0, 1.0)
+from .numbers import Lens, Number
+from .quad import Quad
+
+Vector = tuple[Number, Number, Number]
+Matrix = tuple[Vector, Vector, Vector]  # rows
 
 # A vertex nearer to the camera's plane than this, in half sides, counts as behind the camera.
 MIN_DEPTH = 1e-6
@@ -25,36 +26,41 @@ class UnitPose(NamedTuple):
     translation: Vector
 
 
-def multiply(a: Matrix, b: Matrix) -> Matrix:
-    """The matrix product a b."""
-    return tuple(tuple(x * b[0][n] + y * b[1][n] + z * b[2][n] for n in range(3)) for x, y, z in a)
+class MetricPose(NamedTuple):
+    """X_camera = rotation X_marker + t_mm, and the root mean square reprojection distance in px."""
+
+    rotation: Matrix
+    t_mm: Vector
+    rms_px: Number
 
 
 def spokes(rotation: Matrix) -> tuple[Vector, ...]:
-    """The four vectors from the marker's centre to its vertices, in the camera's axes."""
-    return tuple(tuple(row[0] * x + row[1] * y for row in rotation) for x, y in zip(VERTEX_X, VERTEX_Y, strict=True))
+    """The four vectors from the marker's centre to V1..V4, in the camera's axes."""
+    third = tuple(row[0] + row[1] for row in rotation)
+    fourth = tuple(row[1] - row[0] for row in rotation)
+    return tuple(-value for value in third), tuple(-value for value in fourth), third, fourth
 
 
-def residuals_px(pose: UnitPose, image: Points, focal: tuple[float, float]) -> Points:
-    """Image minus reprojection of the vertices in px, (fx, fy) in px; infinite for one behind the camera."""
-    (fx, fy), (tx, ty, tz) = focal, pose.translation
-    residuals = []
-    for (x, y), (px, py, pz) in zip(image, spokes(pose.rotation), strict=True):
+def residuals(pose: UnitPose, quad: Quad) -> tuple[tuple[Number, Number], ...] | None:
+    """Image minus reprojection of the vertices as slopes; None if one is behind the camera."""
+    tx, ty, tz = pose.translation
+    differences = []
+    for (x, y), (px, py, pz) in zip(quad.points, spokes(pose.rotation), strict=True):
         depth = pz + tz
-        if depth > MIN_DEPTH:
-            residuals.append((fx * (x - (px + tx) / depth), fy * (y - (py + ty) / depth)))
-        else:
-            residuals.append((math.inf, math.inf))
-    return tuple(residuals)
+        if not depth > MIN_DEPTH:
+            return None
+        scale = 1 / depth
+        differences.append((x - (px + tx) * scale, y - (py + ty) * scale))
+    return tuple(differences)
 
 
-def rms_px(pose: UnitPose, image: Points, focal: tuple[float, float]) -> float:
+def rms_px(pose: UnitPose, quad: Quad, lens: Lens) -> Number | float:
     """Root mean square reprojection distance in px; infinite if a vertex is behind the camera."""
-    d1, d2, d3, d4 = (du * du + dv * dv for du, dv in residuals_px(pose, image, focal))
-    return math.sqrt((d1 + d2 + d3 + d4) / 4)
-
-
-def mean_px(pose: UnitPose, image: Points, focal: tuple[float, float]) -> float:
-    """Mean reprojection distance in px, the paper's E before its division; infinite if a vertex is behind."""
-    d1, d2, d3, d4 = (math.sqrt(du * du + dv * dv) for du, dv in residuals_px(pose, image, focal))
-    return (d1 + d2 + d3 + d4) / 4
+    differences = residuals(pose, quad)
+    if differences is None:
+        return math.inf
+    sum_x = sum_y = 0.0
+    for dx, dy in differences:
+        sum_x += dx * dx
+        sum_y += dy * dy
+    return np.sqrt((lens.fx * lens.fx * sum_x + lens.fy * lens.fy * sum_y) * 0.25)

@@ -6,10 +6,17 @@ Contract: every field has the port that its :class:`~hdl.regs.map.Behaviour` ask
 ========  ==========================  ======================================================================
 SETTING   ``name : Out(width)``       what software wrote last
 VALUE     ``name : In(width)``        what software reads
+TAKEN     ``name : In(width)``        what software reads
+          ``name_read : Out(1)``      a strobe in the clock whose ``name`` is read
+COMMAND   ``name : Out(width)``       what software writes, while ``name_written``
+          ``name_written : Out(1)``   a strobe in the clock of the write
+PULSE     ``name : Out(1)``           a strobe in the clock in which software writes 1
 FLAG      ``name_set : In(1)``        sets it; at the same time as software clears it, it stays set
 COUNTER   ``name_incr : In(1)``       adds 1; at the same time as software clears it, it becomes 1
 CONSTANT  no port
 ========  ==========================  ======================================================================
+
+A register may have fields to read and others to write in the same bits.
 
 A window has ``window.index``, the number of the item that the bus asks for, and ``window.select``, set if it
 is this window that it asks, both in the clock of the address, and takes the item's fields one clock later:
@@ -40,6 +47,12 @@ def _field_ports(fields):
                 ports[field.name] = Out(field.width, init=field.reset)
             case Behaviour.VALUE:
                 ports[field.name] = In(field.width)
+            case Behaviour.TAKEN:
+                ports |= {field.name: In(field.width), f"{field.name}_read": Out(1)}
+            case Behaviour.COMMAND:
+                ports |= {field.name: Out(field.width), f"{field.name}_written": Out(1)}
+            case Behaviour.PULSE:
+                ports[field.name] = Out(1)
             case Behaviour.FLAG:
                 ports[f"{field.name}_set"] = In(1)
             case Behaviour.COUNTER:
@@ -101,8 +114,10 @@ class RegisterBank(wiring.Component):
         address, reads = Signal.like(self.bus.address), Signal()
         m.d.sync += [address.eq(self.bus.address), reads.eq(self.bus.read)]
         values = {}  # (register, field) -> what software reads
-        word = Signal(32)
-        words = {register.offset // 4: self._register(m, register, values) for register in self.map.registers}
+        word, words = Signal(32), {}
+        for register in self.map.registers:
+            is_read = reads & (address == register.offset // 4)
+            words[register.offset // 4] = self._register(m, register, is_read, values)
         with m.Switch(address):
             for offset, value in words.items():
                 with m.Case(offset):
@@ -160,7 +175,7 @@ class RegisterBank(wiring.Component):
             }
         )
 
-    def _register(self, m, register, values):
+    def _register(self, m, register, is_read, values):
         """Make a register, and return what it reads as."""
         written = Signal(name=f"{register.name}_written")
         m.d.comb += written.eq(self.bus.write & (self.bus.address == register.offset // 4))
@@ -174,6 +189,18 @@ class RegisterBank(wiring.Component):
                     value = C(field.reset, field.width)
                 case Behaviour.VALUE:
                     value = getattr(ports, field.name)
+                case Behaviour.TAKEN:
+                    value = getattr(ports, field.name)
+                    m.d.comb += getattr(ports, f"{field.name}_read").eq(is_read)
+                case Behaviour.COMMAND:
+                    m.d.comb += [
+                        getattr(ports, field.name).eq(data),
+                        getattr(ports, f"{field.name}_written").eq(written),
+                    ]
+                    continue
+                case Behaviour.PULSE:
+                    m.d.comb += getattr(ports, field.name).eq(data & written)
+                    continue
                 case Behaviour.SETTING:
                     value = getattr(ports, field.name)
                     with m.If(written):

@@ -1,6 +1,6 @@
 """A register description in SystemRDL, as plain Python objects.
 
-Understood is what the sensor needs: an address map of 32-bit registers, and of windows, which are
+Understood is what the system needs: an address map of 32-bit registers, and of windows, which are
 one-dimensional arrays of ``external`` register files. What a field does follows from SystemRDL's own
 properties; see :class:`Behaviour`. Anything else is refused, so that hardware, header and documentation
 cannot differ.
@@ -12,13 +12,16 @@ import pathlib
 
 from systemrdl import RDLCompiler
 from systemrdl.node import RegNode
-from systemrdl.rdltypes import AccessType, OnWriteType
+from systemrdl.rdltypes import AccessType, InterruptType, OnWriteType
+
+from hdl.config import CLOCK_HZ, RAM_BYTES, SECTIONS
 
 __all__ = [
-    "RDL", "Behaviour", "Field", "Register", "RegisterMap", "Window", "read_map", "sensor_map", "sensor_tree",
+    "RDL", "Behaviour", "Field", "Register", "RegisterMap", "Window",
+    "peripheral_map", "read_map", "sensor_map", "system_maps", "system_tree",
 ]  # fmt: skip
 
-#: The description of the sensor.
+#: The description of the system, and of the sensor in it.
 RDL = pathlib.Path(__file__).parent.parent / "registers.rdl"
 
 
@@ -28,8 +31,36 @@ class Behaviour(enum.Enum):
     CONSTANT = "constant"  #: never changes: sw = r; hw = na
     SETTING = "setting"  #: written by software: sw = rw; hw = r
     VALUE = "value"  #: given by hardware: sw = r; hw = w
-    FLAG = "flag"  #: set by hardware until software writes 1: hwset or intr; woclr
+    TAKEN = "taken"  #: given by hardware, which is told of each read: sw = r; hw = w; swacc
+    COMMAND = "command"  #: handed to hardware with each write, reads as 0: sw = w; hw = r; swmod
+    PULSE = "pulse"  #: hardware is told when 1 is written, reads as 0: sw = w; hw = r; singlepulse
+    FLAG = "flag"  #: set by hardware until software writes 1: hwset, or intr and stickybit; woclr
     COUNTER = "counter"  #: counts events, stops at its maximum, cleared by any write: counter; onwrite = wclr
+
+
+#: (sw, hw, other properties) of each behaviour, exactly.
+_BEHAVIOURS = {
+    (AccessType.r, AccessType.na, frozenset()): Behaviour.CONSTANT,
+    (AccessType.rw, AccessType.r, frozenset()): Behaviour.SETTING,
+    (AccessType.r, AccessType.w, frozenset()): Behaviour.VALUE,
+    (AccessType.r, AccessType.w, frozenset({"swacc"})): Behaviour.TAKEN,
+    (AccessType.w, AccessType.r, frozenset({"swmod"})): Behaviour.COMMAND,
+    (AccessType.w, AccessType.r, frozenset({"singlepulse"})): Behaviour.PULSE,
+    (AccessType.rw, AccessType.na, frozenset({"hwset", OnWriteType.woclr})): Behaviour.FLAG,
+    (
+        AccessType.rw,
+        AccessType.w,
+        frozenset({"intr", InterruptType.level, "stickybit", OnWriteType.woclr}),
+    ): Behaviour.FLAG,
+    (
+        AccessType.rw,
+        AccessType.na,
+        frozenset({"counter", "incrsaturate", "saturate", OnWriteType.wclr}),
+    ): Behaviour.COUNTER,
+}  # fmt: skip
+
+#: What can also be spelled as `onwrite = ...`.
+_ON_WRITE = {"woclr": OnWriteType.woclr, "woset": OnWriteType.woset}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,28 +118,19 @@ class RegisterMap:
         return next(register for register in self.registers if register.name == name)
 
 
+def _other_properties(node):
+    """What was asked for besides names, access, reset value and an interrupt's enable."""
+    for name in node.list_properties():
+        value = node.get_property(name)
+        if name in ("name", "desc", "sw", "hw", "reset", "enable") or value is None or value is False:
+            continue
+        yield value if isinstance(value, OnWriteType | InterruptType) else _ON_WRITE.get(name, name)
+
+
 def _behaviour(node):
-    get = node.get_property
-    access = get("sw"), get("hw")
-    if get("counter"):
-        wanted = (
-            access == (AccessType.rw, AccessType.na)
-            and get("onwrite") == OnWriteType.wclr
-            and get("incrsaturate") is True
-            and get("incrvalue") in (None, 1)
-        )
-        behaviour = Behaviour.COUNTER
-    elif get("hwset") or get("intr"):
-        wanted = access[0] == AccessType.rw and get("onwrite") == OnWriteType.woclr and node.width == 1
-        behaviour = Behaviour.FLAG
-    else:
-        behaviour = {
-            (AccessType.r, AccessType.na): Behaviour.CONSTANT,
-            (AccessType.rw, AccessType.r): Behaviour.SETTING,
-            (AccessType.r, AccessType.w): Behaviour.VALUE,
-        }.get(access)
-        wanted = behaviour is not None and get("onwrite") is None and get("onread") is None
-    if not wanted:
+    access = node.get_property("sw"), node.get_property("hw")
+    behaviour = _BEHAVIOURS.get((*access, frozenset(_other_properties(node))))
+    if behaviour is None or (behaviour in (Behaviour.FLAG, Behaviour.PULSE) and node.width > 1):
         raise ValueError(f"{node.get_path()} has properties that the hardware does not know")
     return behaviour
 
@@ -145,14 +167,21 @@ def _window(node):
     return Window(node.inst_name.lower(), offset, count, stride, _registers(node.children()))
 
 
-def _tree(path, macros):
+def _tree(path, top, macros):
     compiler = RDLCompiler()
     compiler.compile_file(str(path), defines={name: str(value) for name, value in macros.items()})
-    return compiler.elaborate().top
+    return compiler.elaborate(top_def_name=top).top
 
 
-def read_map(path, **macros):
-    """The map that the last address map of an RDL file describes, with these macros defined.
+def _map(tree):
+    nodes = tree.children(unroll=False)
+    windows = [node for node in nodes if node.is_array]
+    registers = [node for node in nodes if not node.is_array]
+    return RegisterMap(tree.inst_name.lower(), tree.size, _registers(registers), tuple(map(_window, windows)))
+
+
+def read_map(path, top=None, **macros):
+    """The map that the address map ``top`` of an RDL file describes, or its last, with these macros defined.
 
     Raises
     ------
@@ -161,23 +190,30 @@ def read_map(path, **macros):
     systemrdl.RDLCompileError
         If it is no valid SystemRDL; among that, if a macro makes windows overlap.
     """
-    top = _tree(path, macros)
-    nodes = top.children(unroll=False)
-    windows = [node for node in nodes if node.is_array]
-    registers = [node for node in nodes if not node.is_array]
-    return RegisterMap(top.inst_name.lower(), top.size, _registers(registers), tuple(map(_window, windows)))
+    return _map(_tree(path, top, macros))
+
+
+def peripheral_map(name, **macros):
+    """The registers of the peripheral that hdl/registers describes in ``name.rdl``."""
+    return read_map(RDL.parent / "registers" / f"{name}.rdl", name, **macros)
 
 
 def _macros(config):
     names = ("width", "height", "blob_depth", "corner_depth", "marker_depth")
-    return {name.upper(): getattr(config, name) for name in names}
+    sizes = {name.upper(): getattr(config, name) for name in names}
+    return sizes | {"CLOCK_HZ": CLOCK_HZ, "RAM_BYTES": RAM_BYTES, "SECTIONS": SECTIONS}
 
 
 def sensor_map(config):
     """The sensor's registers for a :class:`~hdl.config.SensorConfig`."""
-    return read_map(RDL, **_macros(config))
+    return read_map(RDL, "rasterpose", **_macros(config))
 
 
-def sensor_tree(config):
-    """The same as systemrdl-compiler's own nodes, for the tools that want those."""
-    return _tree(RDL, _macros(config))
+def system_tree(config):
+    """The whole system as systemrdl-compiler's own nodes, for the tools that want those."""
+    return _tree(RDL, "rasterpose_system", _macros(config))
+
+
+def system_maps(config):
+    """Instance name -> (bytes from the system's first register on, its RegisterMap), for the whole system."""
+    return {node.inst_name: (node.raw_address_offset, _map(node)) for node in system_tree(config).children()}

@@ -34,6 +34,7 @@ class Bench:
     """
 
     PHOTOGRAPHS = 20
+    FRAMES_OF_FIVE = 20
 
     def __init__(self, *, engine="rtl", frames=300, progress=lambda items, description: items):
         self.engine = engine
@@ -47,6 +48,13 @@ class Bench:
         from sim.engine.sensor import RtlSensor  # the model alone does without the engine
 
         return RtlSensor(640, 480)
+
+    @functools.cached_property
+    def system(self):
+        """The whole system from its Verilog, 640 x 480, with its firmware."""
+        from sim.engine.system import RtlSystem
+
+        return RtlSystem(640, 480)
 
     @functools.cached_property
     def model(self):
@@ -87,6 +95,14 @@ class Bench:
         for scene, result in zip(self.scenes, results, strict=True):
             total += score_frame(result.markers["vertices"], [marker["vertices"] for marker in scene.truth])
         return total
+
+    @functools.cached_property
+    def five_markers(self):
+        """The firmware's Load with 20 frames without a gap, five markers each."""
+        from sim.measure.frames import five_marker_frames, run_load
+
+        with_five = five_marker_frames(self.model, self.settings, self.FRAMES_OF_FIVE)
+        return run_load(self.system, *with_five, self.settings)
 
     @functools.cached_property
     def photograph_markers(self):

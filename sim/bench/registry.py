@@ -10,7 +10,7 @@ A new one is a function of a :class:`~sim.bench.context.Bench`, decorated where 
 from collections.abc import Callable
 from dataclasses import dataclass
 
-__all__ = ["MEASUREMENTS", "Measurement", "Target", "at_least", "at_most", "exactly", "measurement"]
+__all__ = ["MEASUREMENTS", "Measurement", "Target", "at_least", "at_most", "each_at_most", "exactly", "measurement"]
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Target:
     """What a value must be: ``text`` says it, ``met`` decides it."""
 
     text: str
-    met: Callable[[float], bool]
+    met: Callable[[float | dict], bool]
 
 
 def exactly(value):
@@ -34,6 +34,13 @@ def at_least(value):
 def at_most(value):
     """The value or less."""
     return Target(f"≤ {value:,}", lambda measured: measured <= value)
+
+
+def each_at_most(values):
+    """Of a dict of figures, those named in ``values`` at most what that has for them."""
+    limits = sorted(set(values.values()))
+    text = "; ".join(f"{' '.join(name for name in values if values[name] == limit)} ≤ {limit:,}" for limit in limits)
+    return Target(text, lambda measured: all(measured[name] <= limit for name, limit in values.items()))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +59,7 @@ class Measurement:
     needs_rtl : bool
         Only the Verilog has it; with the model alone it is left out.
     measure : callable
-        From a Bench to a number.
+        From a Bench to a number, or to a dict of them by name.
     """
 
     name: str

@@ -8,6 +8,7 @@ from typer.exceptions import TyperException
 
 from sim.cli.bench import bench
 from sim.cli.blocks import blobs, corners
+from sim.cli.clocks import clocks
 from sim.cli.demo import demo
 from sim.cli.errors import UserError
 from sim.cli.render import render
@@ -23,7 +24,7 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
 )
-for command in (run, blobs, corners, render, demo, bench):
+for command in (run, blobs, corners, render, demo, bench, clocks):
     app.command()(command)
 
 

@@ -19,6 +19,8 @@ _MARKS = {True: "[green]✓ met[/]", False: "[bold red]✗ missed[/]", None: ""}
 def _shown(value):
     if value is None:
         return "[dim]not measured[/]"
+    if isinstance(value, dict):
+        return "\n".join(f"{name} {_shown(part)}" for name, part in value.items())
     return f"{value:,}" if isinstance(value, int) else f"{value:,.4g}"
 
 

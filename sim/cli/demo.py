@@ -79,6 +79,7 @@ def _table(report, truth):
 
 def demo(
     engine: options.EngineOption = options.Engine.RTL,
+    pose: options.PoseOption = None,
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder for what it writes.")] = "build/out/demo",
 ):
     """Render two scenes, find their markers and show the poses beside the truth."""
@@ -87,9 +88,10 @@ def demo(
     folder = checked_folder(out)
     console = printer()
     settings = options.checked_settings()
+    pose = options.pose_source(pose, engine)
     scenes = _scenes()
     for scene in scenes.values():
-        sensor_for(engine, scene.width, scene.height)
+        sensor_for(engine, pose, scene.width, scene.height)
     reports = []
     for name, scene in progress(scenes.items(), "scenes"):
         frame = render(scene)
@@ -97,7 +99,7 @@ def demo(
         path = folder / f"{name}.png"
         save_picture(path, frame.image)
         camera = options.camera_for(scene.width, scene.height, scene.lens.fx, (scene.lens.cx, scene.lens.cy))
-        report = analyse(path.name, image, engine=engine, settings=settings, camera=camera, side_mm=SIDE_MM)
+        report = analyse(path.name, image, engine=engine, pose=pose, settings=settings, camera=camera, side_mm=SIDE_MM)
         save_overlay(folder / f"{name}.overlay.png", image, report, camera, SIDE_MM)
         reports.append({**report, "truth": frame.truth})
     for report in reports:

@@ -7,7 +7,8 @@ import numpy as np
 
 from sim.cli.console import busy
 from sim.cli.errors import reported
-from sim.cli.options import Engine
+from sim.cli.options import Engine, PoseSource
+from sim.cli.poses import firmware_poses, reference_poses
 from sim.pictures import build_for
 
 __all__ = ["engine_errors", "find_every_blob", "find_every_corner", "run_frame", "sensor_for"]
@@ -26,7 +27,13 @@ def engine_errors(engine):
 
 
 @functools.cache
-def _sensor(engine, width, height):
+def _sensor(engine, pose, width, height):
+    if pose is PoseSource.FIRMWARE:
+        from firmware.toolchain import ToolchainError
+        from sim.engine.system import RtlSystem
+
+        with busy("building the Verilog system and its firmware"), engine_errors(engine), reported(ToolchainError):
+            return RtlSystem(width, height)
     if engine is Engine.RTL:
         from sim.engine.sensor import RtlSensor
 
@@ -37,16 +44,22 @@ def _sensor(engine, width, height):
     return ModelSensor(width, height)
 
 
-def sensor_for(engine, width, height):
+def sensor_for(engine, pose, width, height):
     """The smallest build that takes a picture of this size; built once, so a first call may take long."""
-    return _sensor(engine, *build_for(width, height))
+    return _sensor(engine, pose, *build_for(width, height))
 
 
-def run_frame(engine, image, settings):
-    """FrameResult of a picture (H, W, 3)."""
-    sensor = sensor_for(engine, image.shape[1], image.shape[0])
+def run_frame(engine, pose, image, settings, camera, side_mm):
+    """FrameResult of a picture (H, W, 3), and a MarkerPose for each of its markers."""
+    sensor = sensor_for(engine, pose, image.shape[1], image.shape[0])
+    if pose is PoseSource.FIRMWARE:
+        own = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
+        with engine_errors(engine):
+            result, report = sensor.run(image, settings, side_mm=side_mm, **own)
+        return result, firmware_poses(report.markers)
     with engine_errors(engine):
-        return sensor.run([image], settings)[0]
+        (result,) = sensor.run([image], settings)
+    return result, reference_poses(result.markers, camera, side_mm)
 
 
 def find_every_blob(engine, image, settings):

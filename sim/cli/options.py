@@ -21,10 +21,14 @@ __all__ = [
     "FrameArgument",
     "JsonOption",
     "MaxArcOption",
+    "PoseOption",
+    "PoseSource",
     "ThresholdOption",
     "camera_for",
+    "checked_for_firmware",
     "checked_settings",
     "checked_side",
+    "pose_source",
 ]
 
 DEFAULTS = Settings()
@@ -37,9 +41,20 @@ class Engine(enum.StrEnum):
     MODEL = "model"  #: the same in Python, without clocks
 
 
+class PoseSource(enum.StrEnum):
+    """What makes poses of a marker's vertices."""
+
+    FIRMWARE = "firmware"  #: the program on the soft core, in the same simulation as the pixels
+    REFERENCE = "reference"  #: the Python reference in double precision
+
+
 FRAME = typer.Argument(help="Picture, 16 x 16 to 1920 x 1080 px.", metavar="FRAME")
 FrameArgument = Annotated[str, FRAME]
 EngineOption = Annotated[Engine, typer.Option(help="The emitted Verilog, or its model in Python.")]
+PoseOption = Annotated[
+    PoseSource | None,
+    typer.Option(help="The firmware on the soft core, or the Python reference.  [default: firmware with rtl]"),
+]
 JsonOption = Annotated[str | None, typer.Option("--json", help="File for the result, - for standard output.")]
 ThresholdOption = Annotated[int, typer.Option(help="Foreground is darker than this, 0 to 255.")]
 BrightOption = Annotated[bool, typer.Option("--bright", help="Foreground is what is not darker instead.")]
@@ -65,3 +80,26 @@ def camera_for(width, height, focal, center):
     """Camera of a frame; ``center`` None is the frame's middle."""
     with reported(ValueError):
         return Camera(focal, focal, *(center or ((width - 1) / 2, (height - 1) / 2)))
+
+
+def pose_source(pose, engine):
+    """Where poses come from: what was asked for, or the firmware wherever it runs."""
+    if pose is None:
+        return PoseSource.FIRMWARE if engine is Engine.RTL else PoseSource.REFERENCE
+    if pose is PoseSource.FIRMWARE and engine is Engine.MODEL:
+        raise UserError("the model has no processor for the firmware; use --engine rtl or --pose reference")
+    return pose
+
+
+def checked_for_firmware(camera, side_mm):
+    """Complain about a camera or a marker whose poses single precision cannot hold."""
+    for name, value, low, high in (
+        ("focal", camera.fx, 1, 1e6),
+        ("center", camera.cx, -1e6, 1e6),
+        ("center", camera.cy, -1e6, 1e6),
+        ("side", side_mm, 1e-3, 1e6),
+    ):
+        if not low <= value <= high:
+            raise UserError(
+                f"{name} must be {low:g} to {high:g} for the firmware, not {value:g}; or use --pose reference"
+            )

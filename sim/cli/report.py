@@ -1,6 +1,6 @@
 """A frame's result as JSON has it, with the poses of its markers."""
 
-from firmware.reference import PoseError, estimate_pose
+from firmware.reference import PoseError
 
 __all__ = ["blobs_report", "corners_report", "frame_report"]
 
@@ -26,25 +26,27 @@ def corners_report(corners):
 def _pose_report(pose):
     if pose is None:
         return None
-    return {"R": pose.R.tolist(), "t_mm": pose.t_mm.tolist(), "rms_px": pose.rms_px}
+    return {"R": pose.R.tolist(), "t_mm": pose.t_mm.tolist(), "rms_px": float(pose.rms_px)}
 
 
-def _marker_report(marker, camera, side_mm):
-    """Entry of a marker; ``pose_error`` says why where there is no pose."""
-    estimate = estimate_pose(marker["vertices"], camera, side_mm)
+def _marker_report(marker, pose):
+    """Entry of a marker and its MarkerPose; ``pose_error`` says why where there is no pose."""
+    estimate = pose.estimate
     report = {
         "box": marker["box"].tolist(),
         "vertices": marker["vertices"].tolist(),
         "pose": _pose_report(estimate.pose),
         "other_pose": _pose_report(estimate.other),
+        "pose_source": str(pose.source),
+        "pose_clocks": pose.clocks,
     }
     if estimate.error is not PoseError.NONE:
         report["pose_error"] = estimate.error.message
     return report
 
 
-def frame_report(file, image, engine, result, camera, side_mm):
-    """Entry of a frame: its FrameResult, and a pose for each of its markers."""
+def frame_report(file, image, engine, result, poses):
+    """Entry of a frame: its FrameResult, and the MarkerPose of each of its markers."""
     return {
         "file": str(file),
         "width": image.shape[1],
@@ -55,5 +57,5 @@ def frame_report(file, image, engine, result, camera, side_mm):
         "blobs_dropped": result.blobs_dropped,
         "corners": corners_report(result.corners),
         "corners_dropped": result.corners_dropped,
-        "markers": [_marker_report(marker, camera, side_mm) for marker in result.markers],
+        "markers": [_marker_report(*pair) for pair in zip(result.markers, poses, strict=True)],
     }

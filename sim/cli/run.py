@@ -19,10 +19,10 @@ from sim.pictures import read_picture
 __all__ = ["analyse", "run", "save_overlay"]
 
 
-def analyse(file, image, *, engine, settings, camera, side_mm):
+def analyse(file, image, *, engine, pose, settings, camera, side_mm):
     """Report of one picture (H, W, 3)."""
-    result = run_frame(engine, image, settings)
-    return frame_report(file, image, engine, result, camera, side_mm)
+    result, poses = run_frame(engine, pose, image, settings, camera, side_mm)
+    return frame_report(file, image, engine, result, poses)
 
 
 def save_overlay(path, image, report, camera, side_mm):
@@ -35,6 +35,7 @@ def save_overlay(path, image, report, camera, side_mm):
 def run(
     frames: Annotated[list[str], options.FRAME],
     engine: options.EngineOption = options.Engine.RTL,
+    pose: options.PoseOption = None,
     threshold: options.ThresholdOption = options.DEFAULTS.threshold,
     bright: options.BrightOption = options.DEFAULTS.bright,
     fast_n: options.FastNOption = options.DEFAULTS.fast_n,
@@ -72,17 +73,21 @@ def run(
         **dict(zip(("blob_min_width", "blob_min_height", "blob_min_area"), blob_min, strict=True)),
     )
     side_mm = options.checked_side(side)
+    pose = options.pose_source(pose, engine)
     images = [read_picture(frame) for frame in frames]
     cameras = [options.camera_for(image.shape[1], image.shape[0], focal, center) for image in images]
+    if pose is options.PoseSource.FIRMWARE:
+        for camera in cameras:
+            options.checked_for_firmware(camera, side_mm)
     checked_json(json)
     folder = checked_folder(out) if overlay else pathlib.Path(out)
     console = printer(aside=json == STDOUT)
     for image in images:
-        sensor_for(engine, image.shape[1], image.shape[0])
+        sensor_for(engine, pose, image.shape[1], image.shape[0])
     reports, paths = [], []
     jobs = zip(frames, images, cameras, unique_names(frames), strict=True)
     for file, image, camera, name in progress(jobs, "frames", total=len(frames)):
-        report = analyse(file, image, engine=engine, settings=settings, camera=camera, side_mm=side_mm)
+        report = analyse(file, image, engine=engine, pose=pose, settings=settings, camera=camera, side_mm=side_mm)
         reports.append(report)
         if overlay:
             paths.append(folder / f"{name}.overlay.png")

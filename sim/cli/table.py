@@ -23,6 +23,9 @@ def summary(report):
     parts.append(_counted(len(report["markers"]), "marker"))
     if report["clocks"] is not None:
         parts.append(_counted(f"{report['clocks']:,}", "clock"))
+    clocks = [marker["pose_clocks"] for marker in report["markers"] if marker["pose_clocks"] is not None]
+    if clocks:
+        parts.append(f"poses by the firmware in at most {max(clocks):,} clocks each")
     return ", ".join(parts)
 
 

@@ -10,47 +10,23 @@
 #include "Vdut.h"
 #include "registers.h"
 
+#include "camera.h"
+
 namespace {
 
 constexpr int64_t HELD_PATIENCE = 1'000'000;  // clocks; a full queue of candidates takes 6,000
-
-struct Run {
-    const uint32_t* pixels;
-    int64_t count;
-    const uint8_t* idle;  // clocks before each pixel, or null
-    int64_t* fed;         // clock of each pixel that is marked sof, in order
-    int64_t next = 0;
-    int64_t frames = 0;
-    int wait = 0;
-};
 
 struct Sensor {
     VerilatedContext context;
     Vdut dut{&context, ""};
     int64_t clock = 0;
-    Run* run = nullptr;
+    Camera camera;
     uint32_t control = 0;
     std::vector<uint32_t> words;   // published frames, each a header and its items
     std::vector<int64_t> markers;  // clock, frame, number of each marker when it was first read from the live window
 
-    void drive() {
-        bool valid = false;
-        if (run && run->next < run->count) {
-            if (run->wait > 0) {
-                run->wait--;
-            } else {
-                valid = true;
-                dut.camera___05Fpayload = run->pixels[run->next];
-                if (run->pixels[run->next] >> SOF_BIT & 1) run->fed[run->frames++] = clock;
-                run->next++;
-                run->wait = run->idle && run->next < run->count ? run->idle[run->next] : 0;
-            }
-        }
-        dut.camera___05Fvalid = valid;
-    }
-
     void tick() {
-        drive();
+        camera.drive(dut, clock);
         dut.clk = 0;
         dut.eval();
         dut.clk = 1;
@@ -92,7 +68,8 @@ struct Sensor {
         }
         write(IRQ_STATUS, IRQ_PUBLISHED);
         const uint32_t blobs = read(BLOBS), corners = read(CORNERS), markers = read(MARKERS);
-        words.insert(words.end(), {read(FRAME), blobs, read(BLOBS_SMALL), corners, markers, read(CANDIDATES_DROPPED)});
+        words.insert(words.end(), {read(FRAME), blobs, read(BLOBS_SMALL), corners, markers, read(CANDIDATES_DROPPED),
+                                   read(FIRST_PIXEL), read(LAST_PIXEL)});
         read(BLOB_WINDOW, BLOB_WORDS * (blobs & 0xFFFF), words);
         read(CORNER_WINDOW, CORNER_WORDS * (corners & 0xFFFF), words);
         read(MARKER_WINDOW, MARKER_WORDS * (markers & 0xFFFF), words);
@@ -131,7 +108,7 @@ EXPORT Sensor* sensor_new() { return new (std::nothrow) Sensor; }
 EXPORT void sensor_delete(Sensor* sensor) { delete sensor; }
 
 EXPORT void sensor_reset(Sensor* sensor) {
-    sensor->run = nullptr;
+    sensor->camera = Camera{};
     sensor->dut.bus___05Fread = sensor->dut.bus___05Fwrite = 0;
     sensor->dut.rst = 1;
     sensor->tick();
@@ -153,15 +130,13 @@ EXPORT void sensor_idle(Sensor* sensor, int64_t clocks) {
 // pixel. Returns the number of frames published. With ``live`` the markers are read as they are found instead.
 EXPORT int64_t sensor_run(Sensor* sensor, const uint32_t* pixels, int64_t count, const uint8_t* idle, int64_t* fed,
                           int64_t publications, int64_t patience, int live) {
-    Run run{pixels, count, idle, fed};
-    run.wait = idle && count ? idle[0] : 0;
-    sensor->run = &run;
+    sensor->camera = Camera{pixels, count, idle, fed};
     sensor->words.clear();
     sensor->markers.clear();
     int64_t published = 0, last = sensor->clock;
     uint32_t seen = sensor->read(LIVE) & 0xFFFF;
-    while (run.next < count || (published < publications && sensor->clock - last < patience)) {
-        if (run.next < count) last = sensor->clock;
+    while (!sensor->camera.done() || (published < publications && sensor->clock - last < patience)) {
+        if (!sensor->camera.done()) last = sensor->clock;
         if (live) {
             sensor->watch_live(seen);
         } else if (sensor->dut.irq) {
@@ -171,7 +146,7 @@ EXPORT int64_t sensor_run(Sensor* sensor, const uint32_t* pixels, int64_t count,
             sensor->tick();
         }
     }
-    sensor->run = nullptr;
+    sensor->camera = Camera{};
     return published;
 }
 

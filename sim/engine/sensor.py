@@ -6,55 +6,29 @@ import pathlib
 import numpy as np
 
 from hdl import emit
-from hdl.config import SMALLEST_FRAME, SensorConfig
+from hdl.config import SensorConfig
 from hdl.pixels import CameraPixel
 from hdl.regs.bus import READ_LATENCY
 from hdl.regs.map import sensor_map
 from hdl.vision.framer import SETTLING
 from sim.engine.build import EngineError, build_library, cached_verilog
-from sim.engine.packing import pack
-from sim.models.fast import CORNER
-from sim.models.matching import MARKER
-from sim.results import BOX, FrameResult, Settings
+from sim.engine.frames import (
+    HEADER,
+    camera_pixels,
+    checked_frames,
+    feed_arrays,
+    frame_result,
+    marker_items,
+    setting_writes,
+)
+from sim.results import FrameResult, Settings
 
 __all__ = ["RtlSensor"]
 
 _DRIVER = pathlib.Path(__file__).with_name("sensor.cpp")
 _TOP = pathlib.Path(__file__).with_name("sensor_top.v")
-_HEADER_WORDS = 6  # frame, blobs, small blobs, corners, markers, candidates dropped
 #: Clocks after the last pixel in which every frame must be published: a full queue of candidates takes 6,000.
 _PATIENCE = 100_000
-
-
-def _low(word):
-    return (word & 0xFFFF).astype(np.int64)
-
-
-def _high(word):
-    return (word >> 16).astype(np.int64)
-
-
-def _pairs(words):
-    """x and y of words (N, K) as (N, K, 2)."""
-    return np.stack([_low(words), _high(words)], axis=-1)
-
-
-def _markers(words):
-    markers = np.zeros(len(words), MARKER)
-    markers["vertices"] = _pairs(words[:, :4])
-    markers["box"] = _pairs(words[:, 4:6]).reshape(-1, 4)
-    markers["area"], markers["gap_area"] = words[:, 6], words[:, 7]
-    return markers
-
-
-def camera_pixels(frame):
-    """Payloads of one frame, (H, W) grey or (H, W, 3) RGB uint8, as uint32 (H W,)."""
-    rows, columns = frame.shape[:2]
-    colours = frame.reshape(-1, 3).T if frame.ndim == 3 else np.broadcast_to(frame.reshape(-1), (3, rows * columns))
-    index = np.arange(rows * columns)
-    return pack(
-        CameraPixel, r=colours[0], g=colours[1], b=colours[2], sof=index == 0, eol=index % columns == columns - 1
-    ).astype(np.uint32)
 
 
 class RtlSensor:
@@ -64,6 +38,11 @@ class RtlSensor:
     ----------
     width, height : int
         Largest frame, pixels.
+
+    Attributes
+    ----------
+    times : list
+        (FIRST_PIXEL, LAST_PIXEL) of each frame that the last run published.
 
     Raises
     ------
@@ -75,8 +54,13 @@ class RtlSensor:
         self._handle = None
         self.config = SensorConfig(width=width, height=height)
         self.map = sensor_map(self.config)
+        self.times = []
         self._offset = {item.name: item.offset for item in (*self.map.registers, *self.map.windows)}
-        sources = {"driver.cpp": _DRIVER.read_text(), "registers.h": self._header()}
+        sources = {
+            "driver.cpp": _DRIVER.read_text(),
+            "camera.h": _DRIVER.with_name("camera.h").read_text(),
+            "registers.h": self._header(),
+        }
         verilog = cached_verilog(emit.TOP, width, height) + _TOP.read_text()
         path = build_library(verilog, _TOP.stem, sources)
         self._library = ctypes.CDLL(str(path))
@@ -109,6 +93,11 @@ class RtlSensor:
         }
         return "#pragma once\n" + "".join(f"#define {name} {value}\n" for name, value in values.items())
 
+    @property
+    def clock(self):
+        """Clocks since it was made. The next transfer and the next pixel are on their way in this one."""
+        return self._library.sensor_clock(self._handle)
+
     def reset(self):
         """Pulse ``rst`` and enable the interrupt that tells of published frames."""
         self._library.sensor_reset(self._handle)
@@ -134,13 +123,8 @@ class RtlSensor:
     def configure(self, settings, columns, rows):
         """Write every setting; it holds for frames that start later. Waits until the last frame is settled."""
         self._library.sensor_idle(self._handle, ctypes.c_int64(self.config.width + SETTLING))
-        self.write("control", enable=1, bright=settings.bright)
-        self.write("frame_size", columns=columns, rows=rows)
-        self.write("threshold", level=settings.threshold)
-        self.write("fast", threshold=settings.fast_threshold, n=settings.fast_n, max_arc=settings.max_arc)
-        self.write("blob_min", width=settings.blob_min_width, height=settings.blob_min_height)
-        self.write("blob_min_area", pixels=settings.blob_min_area)
-        self.write("marker_min", side=settings.marker_min_side)
+        for register, fields in setting_writes(settings, columns, rows):
+            self.write(register, **fields)
 
     def feed(self, pixels, *, idle=None, publications=0, patience=_PATIENCE, live=False):
         """Feed raw camera payloads (uint32) with ``idle`` clocks (uint8) before each, or none.
@@ -148,12 +132,7 @@ class RtlSensor:
         Returns the clocks at which the pixels marked ``sof`` went in and the results of the frames published, each
         with its number. Nothing is checked, so this is the way to feed broken frames.
         """
-        pixels = np.ascontiguousarray(pixels, np.uint32)
-        sof = CameraPixel.as_shape()["sof"].offset
-        fed = np.zeros(np.count_nonzero(pixels >> sof & 1), np.int64)
-        gaps = None if idle is None else np.ascontiguousarray(idle, np.uint8)
-        if gaps is not None and len(gaps) != len(pixels):
-            raise ValueError(f"idle must have one entry for each of {len(pixels)} pixels, not {len(gaps)}")
+        pixels, gaps, fed = feed_arrays(pixels, idle)
         pointers = [None if a is None else ctypes.c_void_p(a.ctypes.data) for a in (pixels, gaps, fed)]
         self._library.sensor_run(
             self._handle, pointers[0], ctypes.c_int64(len(pixels)), pointers[1], pointers[2],
@@ -170,29 +149,17 @@ class RtlSensor:
     def _published(self):
         """[(frame number, FrameResult without clocks)] of the last run."""
         words, results = self._words(), []
+        self.times = []
         while len(words):
-            number, blobs, small, corners, markers, lost = (int(w) for w in words[:_HEADER_WORDS])
-            words = words[_HEADER_WORDS:]
-            stored = []
-            for count, window in ((blobs, "blob"), (corners, "corner"), (markers, "marker")):
-                stride = next(w.stride for w in self.map.windows if w.name == f"{window}_window") // 4
-                size = stride * (count & 0xFFFF)
-                stored.append(words[:size].reshape(-1, stride))
+            header = {name: int(word) for name, word in zip(HEADER, words, strict=False)}
+            words, items = words[len(HEADER) :], {}
+            for name in ("blob", "corner", "marker"):
+                stride = next(w.stride for w in self.map.windows if w.name == f"{name}_window") // 4
+                size = stride * (header[f"{name}s"] & 0xFFFF)
+                items[f"{name}s"] = words[:size].reshape(-1, stride)
                 words = words[size:]
-            boxes = np.zeros(len(stored[0]), BOX)
-            boxes["box"] = _pairs(stored[0][:, :2]).reshape(-1, 4)
-            boxes["area"] = stored[0][:, 2]
-            found = np.zeros(len(stored[1]), CORNER)
-            found["x"], found["y"] = _low(stored[1][:, 0]), _high(stored[1][:, 0])
-            detail = stored[1][:, 1]
-            found["score"], found["arc"], found["bright"] = detail & 0xFF, detail >> 8 & 0x1F, detail >> 16 & 1
-            result = FrameResult(
-                blobs=boxes, blobs_dropped=blobs >> 16, blobs_small=small & 0xFFFF,
-                corners=found, corners_dropped=corners >> 16,
-                markers=_markers(stored[2]), markers_dropped=markers >> 16,
-                candidates_dropped=lost & 0xFFFF,
-            )  # fmt: skip
-            results.append((number, result))
+            self.times.append((header["first_pixel"], header["last_pixel"]))
+            results.append((header["frame"], frame_result(header, **items)))
         return results
 
     def run(self, frames, settings=Settings(), gap=0):  # noqa: B008 - frozen
@@ -218,17 +185,9 @@ class RtlSensor:
         EngineError
             If a frame's results were not published.
         """
-        frames = [np.asarray(frame, np.uint8) for frame in frames]
         if not frames:
             return []
-        rows, columns = frames[0].shape[:2]
-        if any(frame.shape[:2] != (rows, columns) for frame in frames):
-            raise ValueError("all frames of a run must have one size")
-        if not (SMALLEST_FRAME <= columns <= self.config.width and SMALLEST_FRAME <= rows <= self.config.height):
-            raise ValueError(
-                f"a frame must be {SMALLEST_FRAME} x {SMALLEST_FRAME} to "
-                f"{self.config.width} x {self.config.height} pixels, not {columns} x {rows}"
-            )
+        frames, rows, columns = checked_frames(frames, self.config)
         self.configure(settings, columns, rows)
         self.write("irq_status", published=1)  # What an earlier run did not wait for.
         pixels = np.concatenate([camera_pixels(frame) for frame in frames])
@@ -268,6 +227,6 @@ class RtlSensor:
         seen = np.zeros((0, words), np.int64)
         if count:
             seen = np.ctypeslib.as_array(self._library.sensor_markers(self._handle), (count,)).reshape(-1, words).copy()
-        markers = _markers(seen[:, 3:].astype(np.uint32))
+        markers = marker_items(seen[:, 3:].astype(np.uint32))
         last = fed[0] + markers["box"][:, 3].astype(np.int64) * columns + markers["box"][:, 2]
         return {"markers": markers, "vertices_latency_clocks": seen[:, 0] - last}

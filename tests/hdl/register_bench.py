@@ -15,6 +15,7 @@ __all__ = ["BUS", "CONFIG", "REGISTERS", "WINDOWS", "BankBench", "check", "senso
 
 CONFIG = SensorConfig(width=64, height=48)
 C, S, V, F, N = "constant", "setting", "value", "flag", "counter"
+TAKEN, COMMAND, PULSE = "taken", "command", "pulse"
 
 #: What there must be: name -> (offset, {field: (low, width, behaviour, reset)}).
 REGISTERS = {
@@ -38,6 +39,7 @@ REGISTERS = {
     "marker_min": (0x2C, {"side": (0, 16, S, 16)}),
     "irq_enable": (0x30, {"published": (0, 1, S, 0), "marker": (1, 1, S, 0)}),
     "irq_status": (0x34, {"published": (0, 1, F, 0), "marker": (1, 1, F, 0)}),
+    "hold": (0x38, {"keep": (0, 1, S, 0)}),
     "frame": (0x40, {"number": (0, 32, V, 0)}),
     "live": (0x44, {"frame": (0, 16, V, 0), "markers": (16, 16, V, 0)}),
     "blobs": (0x48, {"count": (0, 16, V, 0), "dropped": (16, 16, V, 0)}),
@@ -45,6 +47,12 @@ REGISTERS = {
     "corners": (0x50, {"count": (0, 16, V, 0), "dropped": (16, 16, V, 0)}),
     "markers": (0x54, {"count": (0, 16, V, 0), "dropped": (16, 16, V, 0)}),
     "candidates_dropped": (0x58, {"count": (0, 16, V, 0)}),
+    "time": (0x60, {"clocks": (0, 32, V, 0)}),
+    "first_pixel": (0x64, {"clocks": (0, 32, V, 0)}),
+    "last_pixel": (0x68, {"clocks": (0, 32, V, 0)}),
+    "marker_address": (0xA0, {"marker": (0, 8, S, 0)}),
+    **{f"x{k + 1}": (0xC0 + 8 * k, {"column": (0, 16, V, 0)}) for k in range(4)},
+    **{f"y{k + 1}": (0xC4 + 8 * k, {"row": (0, 16, V, 0)}) for k in range(4)},
 } | {
     name: (0x80 + 4 * k, {"count": (0, 32, N, 0)})
     for k, name in enumerate(
@@ -77,16 +85,28 @@ def mixed(number, key, width):
     return (number * (2 * key + 3) * 0x9E37 + key * 0x3779) & (1 << width) - 1
 
 
+def _told(field):
+    """Ports by which a field tells what software does, and their widths."""
+    match field.behaviour:
+        case Behaviour.SETTING | Behaviour.PULSE:
+            return {field.name: field.width}
+        case Behaviour.COMMAND:
+            return {field.name: field.width, f"{field.name}_written": 1}
+        case Behaviour.TAKEN:
+            return {f"{field.name}_read": 1}
+    return {}
+
+
 class BankBench(wiring.Component):
-    """A bank whose inputs change with every clock and whose windows echo their index; settings in view."""
+    """A bank whose inputs change with every clock and whose windows echo their index; its outputs in view."""
 
     def __init__(self, registers):
         self._map = registers
         self._fields = [(r.name, f) for r in registers.registers for f in r.fields]
-        settings = {f"{name}.{f.name}": f.width for name, f in self._fields if f.behaviour == Behaviour.SETTING}
+        told = {f"{name}.{port}": width for name, f in self._fields for port, width in _told(f).items()}
         strobes = sum(f.behaviour in (Behaviour.FLAG, Behaviour.COUNTER) for _, f in self._fields)
         self.seen = data.StructLayout(
-            {"read_data": 32, "irq": 1} | settings | {f"{window.name}.select": 1 for window in registers.windows}
+            {"read_data": 32, "irq": 1} | told | {f"{window.name}.select": 1 for window in registers.windows}
         )
         super().__init__({"bus": In(unstalled(BUS)), "strobes": In(unstalled(strobes)), "o": Out(unstalled(self.seen))})
 
@@ -108,15 +128,14 @@ class BankBench(wiring.Component):
         for name, field in self._fields:
             ports = getattr(bank, name, None)
             match field.behaviour:
-                case Behaviour.SETTING:
-                    m.d.comb += seen[f"{name}.{field.name}"].eq(getattr(ports, field.name))
-                case Behaviour.VALUE:
+                case Behaviour.VALUE | Behaviour.TAKEN:
                     key = self._map.register(name).offset + field.low
                     m.d.comb += getattr(ports, field.name).eq(mixed(clock, key, field.width))
                 case Behaviour.FLAG:
                     strobes.append(getattr(ports, f"{field.name}_set"))
                 case Behaviour.COUNTER:
                     strobes.append(getattr(ports, f"{field.name}_incr"))
+            m.d.comb += [seen[f"{name}.{port}"].eq(getattr(ports, port)) for port in _told(field)]
         m.d.comb += Cat(strobes).eq(self.strobes.payload & self.strobes.valid.replicate(len(strobes)))
         for window in self._map.windows:
             ports, index = getattr(bank, window.name), Signal(10, name=f"{window.name}_index")
@@ -156,10 +175,29 @@ class Model:
                 return sum(mixed(item, offset + 128 * word + low, width) << low for low, width in words[word].values())
         total = 0
         for key, (offset, low, width, behaviour, _) in self.fields.items():
-            if offset == address:
-                value = mixed(clock, offset + low, width) if behaviour == V else self.state[key]
+            if offset == address and behaviour not in (COMMAND, PULSE):
+                value = mixed(clock, offset + low, width) if behaviour in (V, TAKEN) else self.state[key]
                 total |= value << low
         return total
+
+    def told(self, write, read):
+        """What the fields tell, that is, their ports' values, in a clock with this write after one with this read.
+
+        ``write`` is None or (byte address, data), ``read`` None or a byte address.
+        """
+        for (name, field), (offset, low, width, behaviour, _) in self.fields.items():
+            is_written = write is not None and write[0] == offset
+            wrote = write[1] >> low & (1 << width) - 1 if is_written else 0
+            if behaviour == S:
+                yield f"{name}.{field}", self.state[name, field]
+            elif behaviour == PULSE:
+                yield f"{name}.{field}", wrote
+            elif behaviour == TAKEN:
+                yield f"{name}.{field}_read", read == offset
+            elif behaviour == COMMAND:
+                yield f"{name}.{field}_written", is_written
+                if is_written:
+                    yield f"{name}.{field}", wrote
 
     def interrupts(self):
         state = self.state
@@ -187,18 +225,17 @@ def check(run, given, bench, registers):
     looked = [0]  # what was read, one clock before it is seen
     irq = 0
     for clock, (row, transfer) in enumerate(zip(seen, bus, strict=False)):
-        for name, field in [key for key, rest in model.fields.items() if rest[3] == S]:
-            assert row[f"{name}.{field}"] == model.state[name, field], (clock, name, field)
         assert row["irq"] == irq, clock
         irq = model.interrupts()
         assert row["read_data"] == looked[-1], (clock, hex(4 * bus[clock - 2]["address"]))
         before = bus[clock - 1]
-        looked.append(model.word(4 * before["address"], clock) if clock and before["read"] else 0)
+        read = 4 * before["address"] if clock and before["read"] else None
+        write = (4 * transfer["address"], int(transfer["write_data"])) if transfer["write"] else None
+        looked.append(0 if read is None else model.word(read, clock))
+        for name, value in model.told(write, read):
+            assert row[name] == value, (clock, name)
         for name, (offset, items, words) in WINDOWS.items() if len(model.fields) > 10 else ():
             inside = offset <= 4 * transfer["address"] < offset + 4 * items * len(words)
             assert row[f"{name}.select"] == inside, (clock, name)
-        model.step(
-            (4 * transfer["address"], int(transfer["write_data"])) if transfer["write"] else None,
-            strobes[clock],
-        )
+        model.step(write, strobes[clock])
     return model

@@ -3,6 +3,7 @@
 import re
 import shutil
 import subprocess
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -19,8 +20,23 @@ WIDTH, HEIGHT = CONFIG.width, CONFIG.height
 SMALL_MAP = """addrmap small {
     default regwidth = 32;
     reg { field { sw = rw; hw = na; counter; incrsaturate; onwrite = wclr; } count[3:0] = 0; } EVENTS @ 0x0;
+    reg {
+        field { sw = w; hw = r; swmod; } send[7:0];
+        field { sw = r; hw = w; swacc; } data[9:2];
+        field { sw = r; hw = w; } valid[31:31];
+    } PORT @ 0x4;
+    reg { field { sw = w; hw = r; singlepulse; } go[5:5] = 0; field { sw = rw; hw = r; } mode[3:0] = 2; } ACT @ 0x8;
     reg { field { sw = rw; hw = r; } low[3:1] = 5; field { sw = rw; hw = r; } high[31:28] = 9; } SPARSE @ 0xC;
-};"""
+    reg { field { sw = w; hw = r; swmod; } word[31:0]; } ONLY @ 0x10;
+};
+addrmap other { reg { field { sw = r; hw = na; } a[31:0] = 1; } ID @ 0; };"""
+SMALL = {
+    "events": (0x0, {"count": (0, 4, "counter", 0)}),
+    "port": (0x4, {"send": (0, 8, "command", 0), "data": (2, 8, "taken", 0), "valid": (31, 1, "value", 0)}),
+    "act": (0x8, {"go": (5, 1, "pulse", 0), "mode": (0, 4, "setting", 2)}),
+    "sparse": (0xC, {"low": (1, 3, "setting", 5), "high": (28, 4, "setting", 9)}),
+    "only": (0x10, {"word": (0, 32, "command", 0)}),
+}
 
 
 def stimulus(addresses, count, seed, *, strobe_bits):
@@ -80,24 +96,35 @@ def test_every_word_after_reset(engine):
     check(engine.run(given), given, sensor_bench(WIDTH, HEIGHT), REGISTERS)
 
 
-def test_counters_stop_and_fields_lie_where_the_map_says(tmp_path):
+@pytest.fixture
+def small_map(tmp_path):
     (tmp_path / "small.rdl").write_text(SMALL_MAP)
-    registers = read_map(tmp_path / "small.rdl")
-    engine = StreamEngine(lambda width, height: BankBench(registers), 16, 16)
-    given = stimulus(np.array([0] + [4, 8, 12] * 14), 4000, 1, strobe_bits=1)
-    given["strobes"] |= 1
-    model = check(
-        engine.run(given),
-        given,
-        BankBench(registers),
-        {
-            "events": (0, {"count": (0, 4, "counter", 0)}),
-            "sparse": (12, {"low": (1, 3, "setting", 5), "high": (28, 4, "setting", 9)}),
-        },
-    )
+    return read_map(tmp_path / "small.rdl", "small")
+
+
+def small_stimulus(count, seed):
+    given = stimulus(np.array([0] + [4, 8, 12, 16, 20] * 14), count, seed, strobe_bits=1)
+    return given | {"strobes": given["strobes"] | 1}
+
+
+def test_counters_stop_and_fields_lie_where_the_map_says(small_map):
+    engine = StreamEngine(lambda width, height: BankBench(small_map), 16, 16)
+    given = small_stimulus(4000, 1)
+    model = check(engine.run(given), given, BankBench(small_map), SMALL)
     given = {"bus": pack(BUS, address=[0] * 40, read=1, write=0, write_data=0), "strobes": np.ones(40, int)}
-    assert fields(engine.run(given)["o"], BankBench(registers).seen)["read_data"][39] == 15
+    assert fields(engine.run(given)["o"], BankBench(small_map).seen)["read_data"][39] == 15
     assert model.state["events", "count"] <= 15
+
+
+def test_every_behaviour_as_emitted(small_map, simulator):
+    given = small_stimulus(1000, 2)
+    check(cocotb_run(BankBench(small_map), simulator, given), given, BankBench(small_map), SMALL)
+
+
+def test_one_of_several_maps(tmp_path):
+    (tmp_path / "small.rdl").write_text(SMALL_MAP)
+    assert read_map(tmp_path / "small.rdl", "small").name == "small"
+    assert read_map(tmp_path / "small.rdl").name == "other"
 
 
 def test_map_is_what_was_asked_for():
@@ -124,10 +151,19 @@ def test_emitted_verilog(simulator):
     [
         "field { sw = rw; hw = rw; } a",
         "field { sw = w; hw = r; } a",
+        "field { sw = rw; hw = r; swmod; } a",
+        "field { sw = rw; hw = r; singlepulse; } a",
+        "field { sw = w; hw = r; swmod; singlepulse; } a",
+        "field { sw = rw; hw = r; swacc; } a",
+        "field { sw = r; hw = w; swacc; swmod; } a",
+        "field { sw = rw; hw = w; level intr; woclr; } a",
+        "field { sw = rw; hw = w; posedge intr; stickybit; woclr; } a",
         "field { sw = rw; hw = r; woclr; } a",
         "field { sw = r; hw = w; onread = rclr; } a",
         "field { sw = rw; hw = na; counter; onwrite = wclr; } a",
         "field { sw = rw; hw = na; hwset; } a",
+        "field { sw = rw; hw = na; hwset; woset; } a",
+        "field { sw = rw; hw = na; counter; incrsaturate; incrvalue = 1; onwrite = wclr; } a",
     ],
 )
 def test_what_the_hardware_does_not_know_is_refused(field, tmp_path):
@@ -143,13 +179,41 @@ def test_windows_must_fit():
     assert [window.count for window in largest.windows] == [128, 128, 1024, 4096]
 
 
-def test_documents(tmp_path, capsys):
-    assert main(["--out", str(tmp_path), "--width", str(WIDTH), "--height", str(HEIGHT)]) == 0
-    page, header = tmp_path / "html" / "index.html", tmp_path / "rasterpose_regs.h"
-    assert capsys.readouterr().out.split() == [str(page), str(header)]
-    assert "RasterPose registers" in page.read_text()
-    text = header.read_text()
-    checks = []
+#: Where the parts of the system are, and some registers of each.
+PARTS = {
+    "sensor": (0x00000, {"ID": 0x0, "IRQ_STATUS": 0x34}),
+    "system_id": (0x10000, {"ID": 0x0, "VERSION": 0x4, "CLOCK_HZ": 0x8, "RAM_BYTES": 0xC}),
+    "uart": (
+        0x11000,
+        {"DATA": 0x0, "STATUS": 0x4, "DIVISOR": 0x8, "IRQ_ENABLE": 0xC, "LOST": 0x10, "ERRORS": 0x14},
+    ),
+    "timer": (0x12000, {"PERIOD": 0x0, "CONTROL": 0x4, "STATUS": 0x8, "SNAPSHOT": 0xC, "IRQ_ENABLE": 0x10}),
+    "performance": (0x13000, {"START": 0x0, "STOP": 0x4, "CLEAR": 0x8, "STATUS": 0xC, "SECTION": 0x80}),
+    "lcd": (0x14000, {"COMMAND": 0x0, "DATA": 0x4, "STATUS": 0x8, "ERRORS": 0xC}),
+    "watchdog": (0x15000, {"LIMIT": 0x0, "KICK": 0x4, "EXPIRED": 0x8}),
+}
+
+
+@pytest.fixture(scope="module")
+def documents(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("registers")
+    assert main(["--out", str(folder), "--width", str(WIDTH), "--height", str(HEIGHT)]) == 0
+    return folder
+
+
+def compile_header(folder, name, conditions, *command):
+    """Compile a file that asserts these conditions about the header's types."""
+    lines = [f'static_assert({condition}, "");' for condition in conditions]
+    includes = ["#include <assert.h>", "#include <stddef.h>", "#include <time.h>", '#include "rasterpose_regs.h"']
+    (folder / name).write_text("\n".join([*includes, *lines, ""]))
+    compiler = shutil.which(command[0]) or pytest.skip(f"{command[0]} not found: install Debian's to run this")
+    options = ("-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", folder / name)
+    subprocess.run([compiler, *command[1:], *map(str, options)], check=True)
+
+
+def test_c_header_of_the_sensor(documents):
+    text = (documents / "rasterpose_regs.h").read_text()
+    checks = ["_Alignof(rasterpose_t) == 4"]
     for name, (offset, members) in REGISTERS.items():
         checks.append(f"offsetof(rasterpose_t, {name.upper()}) == {offset}")
         for field, (low, width, behaviour, reset) in members.items():
@@ -159,16 +223,63 @@ def test_documents(tmp_path, capsys):
                 assert re.search(rf"^#define {macro}_reset {reset:#x}$", text, re.MULTILINE), macro
     for name, (offset, _, words) in WINDOWS.items():
         checks.append(f"offsetof(rasterpose_t, {name.upper()}[1]) == {offset + 4 * len(words)}")
-    checks.append("_Alignof(rasterpose_t) == 4")
-    lines = [f'_Static_assert({condition}, "");' for condition in checks]
-    source = tmp_path / "check.c"
-    source.write_text("\n".join(["#include <stddef.h>", '#include "rasterpose_regs.h"', *lines, ""]))
-    compiler = shutil.which("gcc") or pytest.skip("gcc not found: install Debian's gcc to run this")
-    subprocess.run([compiler, "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", str(source)], check=True)
+    compile_header(documents, "sensor.c", checks, "gcc", "-std=gnu11")
+
+
+@pytest.mark.parametrize("command", [("gcc", "-std=c11"), ("gcc", "-std=gnu11"), ("g++", "-std=c++11")])
+def test_c_header_of_the_system(documents, command):
+    """Also where POSIX has its say about names that end in _t."""
+    checks = [
+        f"offsetof(rasterpose_system_t, {part}.{register}) == {base + offset}"
+        for part, (base, registers) in PARTS.items()
+        for register, offset in registers.items()
+    ]
+    checks += [f"offsetof(rasterpose_system_t, {part}) == {base}" for part, (base, _) in PARTS.items()]
+    checks.append("sizeof(((rasterpose_system_t *)0)->performance.SECTION[0]) == 16")
+    checks.append("UART__DATA__SEND_bm == 0xff && UART__DATA__DATA_bm == 0xff && UART__DATA__VALID_bm == 0x100")
+    compile_header(documents, f"system.{'c' if command[0] == 'gcc' else 'cpp'}", checks, *command)
+
+
+def test_ip_xact(documents):
+    """Every register at its address, and every field at its bits."""
+    space = {"x": "http://www.accellera.org/XMLSchema/IPXACT/1685-2014"}
+    root = ElementTree.parse(documents / "rasterpose.xml").getroot()
+    assert root.findtext("x:name", namespaces=space) == "rasterpose_system"
+    found = {}
+    for block in root.iterfind(".//x:addressBlock", space):
+        base = int(block.findtext("x:baseAddress", namespaces=space).replace("'h", "0x"), 16)
+        for register in block.iterfind("x:register", space):
+            offset = int(register.findtext("x:addressOffset", namespaces=space).replace("'h", "0x"), 16)
+            bits = {
+                field.findtext("x:name", namespaces=space).lower(): (
+                    int(field.findtext("x:bitOffset", namespaces=space)),
+                    int(field.findtext("x:bitWidth", namespaces=space)),
+                )
+                for field in register.iterfind("x:field", space)
+            }
+            found[block.findtext("x:name", namespaces=space), register.findtext("x:name", namespaces=space)] = (
+                base + offset,
+                bits,
+            )
+    for part, (base, registers) in PARTS.items():
+        for register, offset in registers.items():
+            if register != "SECTION":
+                assert found[part, register][0] == base + offset, (part, register)
+    for name, (offset, members) in REGISTERS.items():
+        bits = {field: (low, width) for field, (low, width, *_) in members.items()}
+        assert found["sensor", name.upper()] == (offset, bits)
+
+
+def test_pages(documents, capsys):
+    assert "RasterPose registers" in (documents / "html" / "index.html").read_text()
+    assert main(["--out", str(documents), "--width", str(WIDTH), "--height", str(HEIGHT)]) == 0
+    names = ("html/index.html", "rasterpose_regs.h", "rasterpose.xml")
+    assert capsys.readouterr().out.split() == [str(documents / name) for name in names]
 
 
 def test_documents_are_the_same_on_every_run(tmp_path):
-    first, second = (write_docs(CONFIG, tmp_path / name)[1].read_bytes() for name in "ab")
+    """But for the pages, in which their generator writes the time."""
+    first, second = ([path.read_bytes() for path in write_docs(CONFIG, tmp_path / name)[1:]] for name in "ab")
     assert first == second
 
 

@@ -16,7 +16,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from hdl import lint
-from hdl.emit import BLOCKS, TOP, emit, main, to_verilog
+from hdl.emit import BLOCKS, SYSTEM, TOP, emit, main, parts, to_verilog
 
 ROOT = pathlib.Path(__file__).parents[2]
 
@@ -77,6 +77,7 @@ def test_is_a_module_of_that_name(name):
 
 def test_same_bytes_on_every_run(tmp_path):
     """Whatever the hash seed; and silently, so that nothing was built and not used."""
+    count = len(BLOCKS) + len(parts(SYSTEM))
     for seed in ("1", "2"):
         result = run(
             sys.executable,
@@ -92,9 +93,9 @@ def test_same_bytes_on_every_run(tmp_path):
             env={**os.environ, "PYTHONHASHSEED": seed},
         )
         assert result.returncode == 0, result.stdout
-        assert len(result.stdout.splitlines()) == len(BLOCKS), result.stdout
+        assert len(result.stdout.splitlines()) == count, result.stdout
     files = {seed: {path.name: path.read_bytes() for path in (tmp_path / seed).rglob("*.v")} for seed in ("1", "2")}
-    assert len(files["1"]) == len(BLOCKS)
+    assert len(files["1"]) == count
     assert files["1"] == files["2"]
 
 
@@ -102,6 +103,14 @@ def test_the_whole_sensor_goes_beside_the_blocks_folder(monkeypatch, tmp_path):
     monkeypatch.setitem(BLOCKS, TOP, BLOCKS["grey"])
     assert main([TOP, "--out", str(tmp_path / "verilog")]) == 0
     assert f"module {TOP}(" in (tmp_path / f"{TOP}.v").read_text()
+
+
+def test_the_processor_goes_beside_the_system_with_its_licence(monkeypatch, tmp_path):
+    monkeypatch.setitem(BLOCKS, SYSTEM, lambda width, height, program: BLOCKS["grey"](width, height))
+    assert main([SYSTEM, "--out", str(tmp_path / "verilog")]) == 0
+    assert f"module {SYSTEM}(" in (tmp_path / f"{SYSTEM}.v").read_text()
+    licence, name, _ = (tmp_path / "VexRiscv.v").read_text().partition("module VexRiscv (")
+    assert name and "MIT" in licence and "shall be included in all" in licence
 
 
 @pytest.mark.parametrize(

@@ -39,14 +39,27 @@ class _Software:
     def _write(self, offset, value):
         yield offset >> 2, 0, 1, value
 
-    def _read(self, offset, count=1):
-        """Consecutive words, one a clock; data come two clocks after their address."""
+    def _reads(self, offsets):
+        """One word a clock; data come two clocks after their address."""
         words = []
-        for k in range(count + 1):
-            yield ((offset >> 2) + k, 1, 0, 0) if k < count else _NOTHING
+        for k, offset in enumerate([*offsets, None]):
+            yield _NOTHING if offset is None else (offset >> 2, 1, 0, 0)
             if k:
                 words.append(int(self._data.value))
         return words
+
+    def _read(self, offset, count=1):
+        """Consecutive words."""
+        return (yield from self._reads(range(offset, offset + 4 * count, 4)))
+
+    def _markers(self, count, words):
+        """Each marker through X1 to Y4 from the clock after MARKER_ADDRESS on, and in between the one before it."""
+        offset = self._offset
+        for k in range(count):
+            before = offset["marker_window"] + 4 * words * ((k - 1) % count)
+            yield from self._write(offset["marker_address"], k)
+            turns = ((offset["x1"] + 4 * word, before + 4 * word) for word in range(8))
+            self.words += yield from self._reads([at for turn in turns for at in turn])
 
     def _frame(self):
         offset = self._offset
@@ -56,11 +69,13 @@ class _Software:
         yield from self._write(offset["irq_status"], self._published)
         counts = {}
         start = len(self.words)
-        for name in ("frame", "blobs", "blobs_small", "corners", "markers", "candidates_dropped"):
+        for name in ("frame", "first_pixel", "last_pixel", "blobs", "blobs_small", "corners", "markers",
+                     "candidates_dropped"):  # fmt: skip
             (counts[name],) = yield from self._read(offset[name])
             self.words.append(counts[name])
         for name, window, words in self._windows:
             self.words += yield from self._read(offset[window], int(words) * (counts[name] & 0xFFFF))
+        yield from self._markers(counts["markers"] & 0xFFFF, int(self._windows[-1][2]))
         self.frames.append(len(self.words) - start)
         yield from self._write(offset["control"], self._control)
 

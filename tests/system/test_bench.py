@@ -6,14 +6,17 @@ import json
 import numpy as np
 import pytest
 
-from sim.bench import MEASUREMENTS, Bench, at_least, at_most, exactly, measurement
+from sim.bench import MEASUREMENTS, Bench, at_least, at_most, each_at_most, exactly, measurement
 from sim.bench.score import FOUND_PX, Score, fit_markers, score_frame
 
 SQUARE = np.array([[100, 100], [200, 100], [200, 200], [100, 200]], float)
 KEYS = {
     "clocks_per_frame", "vertices_latency_lines", "rtl_frames_per_s", "model_frames_per_s", "found_rate",
     "false_markers", "vertex_rms_px", "vertex_p95_px", "wrong_order", "false_markers_photographs",
+    "posit_clocks_classic", "posit_clocks_centred", "posit_clocks_soft_float", "fpu_clocks",
+    "system_clocks_five_markers", "firmware_bytes", "pose_latency_clocks",
 }  # fmt: skip
+FIRMWARE = ("posit_clocks_classic", "posit_clocks_soft_float", "fpu_clocks", "firmware_bytes", "pose_latency_clocks")
 
 
 def counts(score):
@@ -77,6 +80,10 @@ def test_targets():
     assert at_least(3).met(3) and not at_least(3).met(2.9)
     assert at_most(3).met(3) and not at_most(3).met(3.1)
     assert exactly(307200).text == "= 307,200"
+    each = each_at_most({"add": 4, "divide": 16, "multiply": 4})
+    assert each.text == "add multiply ≤ 4; divide ≤ 16"
+    assert each.met({"add": 4, "divide": 16, "multiply": 3, "least": 99})
+    assert not each.met({"add": 4, "divide": 17, "multiply": 3})
 
 
 def test_every_agreed_figure_is_registered_once():
@@ -90,6 +97,39 @@ def test_verdict():
     assert clocks.verdict(307200) is True and clocks.verdict(307201) is False and clocks.verdict(None) is None
     without_target = dataclasses.replace(clocks, target=None)
     assert without_target.verdict(307200) is None
+
+
+@pytest.fixture(scope="module")
+def bench():
+    """The bench with few frames, its system built once."""
+    small = Bench(frames=1)
+    small.FRAMES_OF_FIVE = 2
+    return small
+
+
+@pytest.mark.parametrize("name", FIRMWARE)
+def test_firmware_figures_meet_their_targets(bench, name):
+    one = MEASUREMENTS[name]
+    value = one.measure(bench)
+    assert one.needs_rtl and one.verdict(value) in (True, None)
+    assert all(part > 0 for part in (value.values() if isinstance(value, dict) else [value]))
+
+
+def test_five_markers_a_frame(bench):
+    """In the firmware as such a pose is slower than alone, but not by much: sentences share its cache."""
+    busy = MEASUREMENTS["system_clocks_five_markers"]
+    pose = MEASUREMENTS["posit_clocks_centred"]
+    clocks = busy.measure(bench)
+    assert busy.verdict(clocks) and pose.verdict(pose.measure(bench))
+    assert 5 * pose.measure(bench) < clocks
+
+
+def test_wrong_sentences_are_no_figure(bench, monkeypatch):
+    right = bench.five_markers
+    monkeypatch.setattr(bench, "five_markers", right._replace(lines=["$RPPOS*00", *right.lines[1:]]))
+    with pytest.raises(RuntimeError) as caught:
+        MEASUREMENTS["system_clocks_five_markers"].measure(bench)
+    assert str(caught.value) == "11 of 12 sentences are those of the reference"
 
 
 def test_photographs_have_no_markers():
@@ -106,6 +146,16 @@ def test_bench_with_the_model(sim, tmp_path):
     assert result.code == bool(values["missed"])
     assert values["clocks_per_frame"] is None and values["found_rate"] == 1
     assert "not measured" in result.out
+
+
+def test_figures_of_several_parts(sim, tmp_path, monkeypatch):
+    target = each_at_most({"one": 1, "two": 1})
+    measurement("several", "Parts", "clocks", target=target)(lambda bench: {"one": 1, "two": 2.5})
+    monkeypatch.setattr("sim.bench.MEASUREMENTS", {"several": MEASUREMENTS.pop("several")})
+    result = sim("bench", "--engine", "model", "--json", tmp_path / "bench.json")
+    values = json.loads((tmp_path / "bench.json").read_text())
+    assert result.code == 1 and values["several"] == {"one": 1, "two": 2.5} and values["missed"] == ["several"]
+    assert "one 1" in result.out and "two 2.5" in result.out and "one two ≤ 1" in result.out
 
 
 def test_a_missed_target_is_exit_code_1(sim, tmp_path, monkeypatch):

@@ -39,7 +39,8 @@ def test_run_json_has_the_agreed_form(sim, pictures):
         assert corner["polarity"] in ("dark", "bright")
     assert len(frame["markers"]) == 3
     for marker in frame["markers"]:
-        assert set(marker) == {"box", "vertices", "pose", "other_pose"}
+        assert set(marker) == {"box", "vertices", "pose", "other_pose", "pose_source", "pose_clocks"}
+        assert (marker["pose_source"], marker["pose_clocks"]) == ("reference", None)
         assert np.shape(marker["vertices"]) == (4, 2)
         assert set(marker["pose"]) == POSE_KEYS
         assert np.shape(marker["pose"]["R"]) == (3, 3) and np.shape(marker["pose"]["t_mm"]) == (3,)

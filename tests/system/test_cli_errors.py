@@ -82,6 +82,20 @@ def test_bad_option(sim, pictures, tmp_path, options, reason):
     assert reason in line
 
 
+@pytest.mark.parametrize(
+    "options, reason",
+    [
+        (["--engine", "model", "--pose", "firmware"], "the model has no processor for the firmware"),
+        (["--focal", "1e39"], "focal must be 1 to 1e+06 for the firmware, not 1e+39"),
+        (["--center", "1e7", "0"], "center must be"),
+        (["--side", "1e-9"], "side must be 0.001 to 1e+06 for the firmware"),
+        (["--pose", "guess"], "--pose"),
+    ],
+)
+def test_what_the_firmware_cannot_do(sim, pictures, tmp_path, options, reason):
+    assert reason in complaint(sim("run", pictures / "paper.png", "--out", tmp_path, *options))
+
+
 @pytest.mark.parametrize("arguments, reason", [(["run"], "argument"), (["fly"], "fly")])
 def test_bad_command(sim, arguments, reason):
     assert reason in complaint(sim(*arguments))

@@ -7,7 +7,8 @@ import pytest
 
 from hdl.config import SMALLEST_FRAME
 from sim.engine import random_idle
-from sim.engine.sensor import RtlSensor, camera_pixels
+from sim.engine.frames import camera_pixels
+from sim.engine.sensor import RtlSensor
 from sim.models.sensor import ModelSensor
 from sim.photos import photographs
 from sim.results import Settings, differences

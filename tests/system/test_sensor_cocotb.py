@@ -7,7 +7,7 @@ from hdl import emit
 from hdl.config import SensorConfig
 from hdl.regs.map import sensor_map
 from sim.engine import random_idle
-from sim.engine.sensor import camera_pixels
+from sim.engine.frames import camera_pixels
 from sim.models.sensor import ModelSensor
 from tests.hdl import harness
 from tests.shapes import marker_frame, marker_grid
@@ -17,12 +17,12 @@ from tests.system.test_sensor import scene
 SETUP = 20
 
 
-def encoded(number, result):
-    """The words that software reads of a frame, counts first."""
+def encoded(number, result, first, last):
+    """The words that software reads of a frame, counts first; its first and last pixel came at these times."""
     stored = ((result.blobs, result.blobs_dropped), (result.corners, result.corners_dropped),
               (result.markers, result.markers_dropped))  # fmt: skip
     blobs, corners, markers = (len(items) | dropped << 16 for items, dropped in stored)
-    words = [number, blobs, result.blobs_small, corners, markers, result.candidates_dropped]
+    words = [number, first, last, blobs, result.blobs_small, corners, markers, result.candidates_dropped]
 
     def points(values):
         return [int(x) | int(y) << 16 for x, y in np.reshape(values, (-1, 2))]
@@ -32,10 +32,20 @@ def encoded(number, result):
     for corner in result.corners:
         detail = (int(corner[name]) << low for name, low in (("score", 0), ("arc", 8), ("bright", 16)))
         words += [*points([corner["x"], corner["y"]]), sum(detail)]
-    for marker in result.markers:
-        words += [*points(marker["vertices"]), *points(marker["box"])]
-        words += [int(marker["area"]), int(marker["gap_area"])]
+    items = [
+        [*points(marker["vertices"]), *points(marker["box"]), int(marker["area"]), int(marker["gap_area"])]
+        for marker in result.markers
+    ]
+    words += [word for item in items for word in item]
+    for k, marker in enumerate(result.markers):  # The paper's port, and the window in between.
+        coordinates = marker["vertices"].reshape(-1).tolist()
+        words += [word for turn in zip(coordinates, items[k - 1], strict=True) for word in turn]
     return words
+
+
+def pixel_clocks(beats, idle):
+    """Clocks from the reset to each pixel."""
+    return SETUP + np.cumsum(np.broadcast_to(idle, beats.shape) + 1)
 
 
 def spread(parts):
@@ -43,7 +53,7 @@ def spread(parts):
     pixels, resets = [], []
     for beats, idle in parts:
         resets.append(sum(map(len, pixels)))
-        clock = SETUP + np.cumsum(np.broadcast_to(idle, beats.shape) + 1)
+        clock = pixel_clocks(beats, idle)
         pixels.append(np.full(clock[-1] + 1, -1))
         pixels[-1][clock] = beats
     return pixels, resets
@@ -95,16 +105,21 @@ def test_small_frames(simulator):
     """A reset in the middle of a frame, two frames back to back, and one with idle clocks."""
     size = (64, 48)
     random = np.random.default_rng(1)
-    frames = [marker_grid(random, 48, 64, (28, 32)), marker_frame(48, 64, [(15, 9, 30, 90)])]
+    frames = [marker_grid(random, 48, 64, (28, 32)), marker_frame(48, 64, [(5, 9, 20, 90), (37, 20, 22, 0)])]
     noisy = marker_frame(48, 64, [(30, 12, 31, 10)]) * 0.6 + random.normal(40, 3, (48, 64))
     frames.append(np.clip(noisy, 0, 255).astype(np.uint8))
     pixels = [camera_pixels(frame).astype(np.int64) for frame in frames]
     idle = [0 * pixels[0], 0 * pixels[1], random_idle(len(pixels[2]), 0.3, seed=2, longest=4)]
     parts = [(np.concatenate(pixels)[:5000], 0), (np.concatenate(pixels), np.concatenate(idle))]
     models = ModelSensor(*size).run(frames)
-    assert all(len(model.markers) == 1 for model in models)
-    expected = [encoded(number, model) for number, model in enumerate(models)]
-    check(play(simulator, size, parts, 1500), [expected[0], *expected])
+    assert [len(model.markers) for model in models] == [1, 2, 1]
+    expected = []
+    for part, numbers in zip(parts, ([0], [0, 1, 2]), strict=True):
+        time = pixel_clocks(*part) - 1  # 0 in the clock after the reset.
+        for number in numbers:
+            first = number * 48 * 64
+            expected.append(encoded(number, models[number], int(time[first]), int(time[first + 48 * 64 - 1])))
+    check(play(simulator, size, parts, 1500), expected)
 
 
 def test_full_frame():
@@ -115,4 +130,4 @@ def test_full_frame():
     (model,) = ModelSensor().run([frame])
     assert len(model.markers) == 5
     part = (camera_pixels(frame).astype(np.int64), 0)
-    check(play("verilator", (640, 480), [part], 4000), [encoded(0, model)])
+    check(play("verilator", (640, 480), [part], 4000), [encoded(0, model, SETUP, SETUP + 640 * 480 - 1)])

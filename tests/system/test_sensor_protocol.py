@@ -6,7 +6,7 @@ import pytest
 from hdl.config import SMALLEST_FRAME
 from hdl.pixels import CameraPixel
 from sim.engine import fields, random_idle
-from sim.engine.sensor import camera_pixels
+from sim.engine.frames import camera_pixels
 from sim.models.framer import framer
 from sim.results import Settings
 from tests.shapes import marker_grid
@@ -41,31 +41,40 @@ def broken(kind, frame, random):
 
 
 def complete_frames(pixels, columns, rows, size):
-    """(colour images of the complete frames in a stream, counters) as the framer's model has them."""
+    """(colour images of a stream's complete frames, their first and last pixels, counters) by the framer's model."""
     given = fields(pixels.astype(np.uint64), CameraPixel)
     limits = {"width": size[0], "height": size[1], "smallest": SMALLEST_FRAME}
     framed = framer(given["sof"], given["eol"], columns, rows, **limits)
     colours = np.stack([given[name] for name in "rgb"], axis=-1).astype(np.uint8)
     ends = framed.beat[framed.last]
     starts = framed.beat[framed.first]
-    starts = [starts[starts <= end][-1] for end in ends]
+    starts = np.array([starts[starts <= end][-1] for end in ends])
     images = [colours[s : e + 1].reshape(rows, columns, 3) for s, e in zip(starts, ends, strict=True)]
-    return images, {COUNTERS[kind]: len(beats) for kind, beats in framed.errors.items()}
+    return images, np.stack([starts, ends], axis=-1), {COUNTERS[kind]: len(at) for kind, at in framed.errors.items()}
 
 
 def counters(rtl):
     return {name: rtl.read(name)["count"] for name in COUNTERS.values()}
 
 
+def pixel_times(rtl, pixels, fed, idle=None):
+    """TIME of every pixel of a stream that was fed just now, the pixels marked sof in these clocks."""
+    clock = np.arange(len(pixels)) + (0 if idle is None else np.cumsum(idle, dtype=np.int64))
+    start = np.argmax(fields(pixels.astype(np.uint64), CameraPixel)["sof"])
+    now = rtl.clock
+    return clock - clock[start] + fed[0] - now + rtl.read("time")["clocks"]
+
+
 def check_stream(rtl, pixels, columns, rows, *, idle=None, note=""):
     """Feed a stream after a reset. Returns the numbers of the frames that were read, all right."""
     size = (rtl.config.width, rtl.config.height)
-    images, errors = complete_frames(pixels, columns, rows, size)
+    images, ends, errors = complete_frames(pixels, columns, rows, size)
     rtl.configure(SETTINGS, columns, rows)
-    _, results = rtl.feed(pixels, idle=idle, publications=len(images), patience=20_000)
+    fed, results = rtl.feed(pixels, idle=idle, publications=len(images), patience=20_000)
     numbers = [number for number, _ in results]
     assert numbers == sorted(set(numbers)) and set(numbers) <= set(range(len(images))), f"{note}: {numbers}"
     compare([result for _, result in results], [images[k] for k in numbers], SETTINGS, size, note)
+    assert rtl.times == [tuple(times) for times in pixel_times(rtl, pixels, fed, idle)[ends[numbers]].tolist()], note
     assert counters(rtl) == errors, note
     assert rtl.read("frames_complete")["count"] == len(images), note
     assert len(numbers) <= len(images) - rtl.read("frames_skipped")["count"], note

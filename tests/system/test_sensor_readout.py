@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.engine.sensor import camera_pixels
+from sim.engine.frames import camera_pixels
 from sim.models.sensor import ModelSensor
 from sim.results import Settings
 from tests.patterns import noise
@@ -12,7 +12,7 @@ from tests.system.test_sensor import compare, picture, scene, sensor
 
 TINY = Settings(blob_min_width=0, blob_min_height=0, blob_min_area=0, fast_threshold=5, fast_n=9, marker_min_side=4)
 #: Registers that say something of the published frame.
-PUBLISHED = ("frame", "blobs", "blobs_small", "corners", "markers", "candidates_dropped")
+PUBLISHED = ("frame", "first_pixel", "last_pixel", "blobs", "blobs_small", "corners", "markers", "candidates_dropped")
 
 
 def words(rtl, window, count=None):

@@ -1,0 +1,5 @@
+#include "function_job.h"
+
+#include "program.h"
+
+INPUT const struct job job = {.count = 1};

@@ -1,0 +1,1 @@
+"""What the processor has besides its memory and the sensor. Each peripheral holds its own registers."""
