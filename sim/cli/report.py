@@ -45,9 +45,9 @@ def _marker_report(marker, pose):
     return report
 
 
-def frame_report(file, image, engine, result, poses):
-    """Entry of a frame: its FrameResult, and the MarkerPose of each of its markers."""
-    return {
+def frame_report(file, image, engine, result, poses, sentences=None):
+    """Entry of a frame: its FrameResult, the MarkerPose of each of its markers, and the firmware's lines, if any."""
+    report = {
         "file": str(file),
         "width": image.shape[1],
         "height": image.shape[0],
@@ -59,3 +59,4 @@ def frame_report(file, image, engine, result, poses):
         "corners_dropped": result.corners_dropped,
         "markers": [_marker_report(*pair) for pair in zip(result.markers, poses, strict=True)],
     }
+    return report if sentences is None else {**report, "sentences": sentences}

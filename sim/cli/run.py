@@ -21,8 +21,8 @@ __all__ = ["analyse", "run", "save_overlay"]
 
 def analyse(file, image, *, engine, pose, settings, camera, side_mm):
     """Report of one picture (H, W, 3)."""
-    result, poses = run_frame(engine, pose, image, settings, camera, side_mm)
-    return frame_report(file, image, engine, result, poses)
+    result, poses, sentences = run_frame(engine, pose, image, settings, camera, side_mm)
+    return frame_report(file, image, engine, result, poses, sentences)
 
 
 def save_overlay(path, image, report, camera, side_mm):

@@ -58,6 +58,8 @@ def print_frame(console, report, table):
     console.print(f"[bold]{escape(report['file'])}[/]  {frame_kind(report)}", soft_wrap=True)
     if table.row_count:
         console.print(table)
+    for sentence in report.get("sentences", ()):
+        console.print(sentence, style="cyan", markup=False, highlight=False, soft_wrap=True)
     console.print(f"[dim]{summary(report)}[/]\n", soft_wrap=True)
 
 

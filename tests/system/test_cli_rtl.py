@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from firmware.reference import Camera, estimate_pose
+from firmware.reference.sentence import parse
 from sim.cli.app import main
 
 
@@ -58,6 +59,10 @@ def test_run_with_the_firmware(sim, pictures, name, options, camera, side_mm):
                 assert pose["R"] == reference.R.tolist() and pose["t_mm"] == reference.t_mm.tolist()
                 assert pose["rms_px"] == float(reference.rms_px)
         assert mine["pose_source"] == "firmware" and 1000 < mine["pose_clocks"] < 8000
+    sentences = [parse(line) for line in rtl.pop("sentences")]
+    assert [sentence.name for sentence in sentences] == ["RPFRM", *["RPPOS"] * len(rtl["markers"])]
+    for (_, fields), marker in zip(sentences[1:], rtl["markers"], strict=True):
+        assert np.allclose(np.float64(fields[4:7]), marker["pose"]["t_mm"], atol=0.001)
     del rtl["markers"], model["markers"]
     assert rtl == {**model, "engine": "rtl", "clocks": rtl["width"] * rtl["height"]}
 
