@@ -5,7 +5,7 @@ is 0 then; likewise an integer that is rounded up in magnitude is one more, or i
 passes a second adder.
 """
 
-from amaranth import Module, Mux, Signal
+from amaranth import Cat, Const, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -67,5 +67,7 @@ class Add(wiring.Component):
                 m.d.comb += [inverts.eq(self.negative), carry.eq(self.negative ^ rounds_up)]
             with m.Case(Operation.FROM_INTEGER):
                 m.d.comb += [inverts.eq(self.negative), carry.eq(self.negative)]
-        m.d.comb += self.total.eq(self.large + Mux(inverts, ~self.small, self.small) + carry)
+        # The carry goes in by one more bit below, where 1 is added to it: it is an input of the adder as all others.
+        addend = Mux(inverts, ~self.small, self.small)
+        m.d.comb += self.total.eq((Cat(Const(1, 1), self.large) + Cat(carry, addend))[1:])
         return m

@@ -7,8 +7,8 @@ finds the digit q of weight 2**-k from the remainder r::
     r' = 2 r,      q = 0   otherwise                t = 2 * (root so far) + 2**-k             for square roots
 
 starting from half of the dividend or radicand. So after 27 digits the remainder is exact, and zero exactly if the
-result is. For square roots ``t`` is put together where digits come: the root so far is a register that starts as 0,
-and in every step 2**-k moves on by a bit.
+result is. For square roots ``t`` is one register: it starts as 1, and a step takes out 2**-k, puts in the digit a place
+higher, and 2**-(k + 1).
 
 Ranges: a dividend and a divisor in [1, 2) give a quotient in (1/2, 2), a radicand in [1, 4) a root in [1, 2). The
 remainder stays below the divisor or below 2 * root + 2**-k, hence below 4.
@@ -81,19 +81,19 @@ class Digits(wiring.Component):
         found = []
         step_remainder, step_subtrahend = remainder, subtrahend
         for step in range(STEPS):
-            # What the place of this step, 2**-k, adds to the subtrahend before and, if the digit is 1, after it.
-            place, next_place = Signal(_POINT + 2, name=f"place_{step}"), Signal(_POINT + 2, name=f"next_place_{step}")
+            place = Signal(_POINT + 2, name=f"place_{step}")  # 2**-k, or 0 for quotients.
             for index in range(len(clock)):
                 m.d.comb += place[_POINT - index * STEPS - step].eq(clock[index] & self.is_root)
             difference, digit = Signal(_POINT + 4, name=f"difference_{step}"), Signal(name=f"digit_{step}")
             after = Signal(_POINT + 2, name=f"remainder_{step}")
+            next_subtrahend = Signal(_POINT + 2, name=f"subtrahend_{step}")
             m.d.comb += [
-                difference.eq((step_remainder << 1) - (step_subtrahend | place)),
+                difference.eq((step_remainder << 1) - step_subtrahend),
                 digit.eq(~difference[-1]),
                 after.eq(Mux(digit, difference, step_remainder << 1)),
-                next_place.eq(Mux(digit, place << 1, 0)),
+                next_subtrahend.eq((step_subtrahend & ~place) | Mux(digit, place << 1, 0) | place >> 1),
             ]
-            step_remainder, step_subtrahend = after, step_subtrahend | next_place
+            step_remainder, step_subtrahend = after, next_subtrahend
             found.append(digit & self.run)
 
         m.d.comb += [
@@ -102,9 +102,12 @@ class Digits(wiring.Component):
             self.inexact.eq(remainder.any()),
         ]
         with m.If(self.start):
-            m.d.sync += [known.eq(self.waiting), subtrahend.eq(0), clock.eq(1)]
+            m.d.sync += [known.eq(self.waiting), clock.eq(1)]
         with m.If(self.load):
-            m.d.sync += remainder.eq(self.significand << Mux(self.doubled, STEPS, STEPS - 1))
+            m.d.sync += [
+                remainder.eq(self.significand << Mux(self.doubled, STEPS, STEPS - 1)),
+                subtrahend.eq(self.is_root << _POINT),
+            ]
         with m.If(self.load_divisor):
             m.d.sync += subtrahend.eq(self.significand << STEPS)
         with m.If(self.run):

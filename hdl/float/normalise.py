@@ -87,6 +87,8 @@ class Normalise(wiring.Component):
         Shift to the left; if ``to_right``, after 32 to the right.
     remaining : :py:`Out(signed(10))`
         Biased exponent of the result, less 1; 0 also for subnormals. Negative only where the search was unlimited.
+    overflows : :py:`Out(1)`
+        ``remaining`` is 254 or more, beyond the largest number.
     significand : :py:`Out(24)`
         The result.
     guard, sticky : :py:`Out(1)`
@@ -99,6 +101,7 @@ class Normalise(wiring.Component):
     exponent: In(signed(10))
     places: Out(5)
     remaining: Out(signed(10))
+    overflows: Out(1)
     significand: Out(24)
     guard: Out(1)
     sticky: Out(1)
@@ -108,6 +111,8 @@ class Normalise(wiring.Component):
         m.d.comb += [
             self.places.eq(leading_zeros(m, self.bits)),
             self.remaining.eq(Mux(self.to_right, 0, self.exponent - self.places)),
+            # Not told from the difference, but beside it.
+            self.overflows.eq(self.exponent - 254 >= self.places),
         ]
         window, dropped = Signal(56), [self.to_right & self.value[:24].any()]
         m.d.comb += window.eq(Mux(self.to_right, Cat(self.value[24:], Const(0, 32)), Cat(Const(0, 8), self.value)))

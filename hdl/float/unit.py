@@ -158,21 +158,22 @@ class FloatUnit(wiring.Component):
 
         # What Normalise and Round work on, and what was known of the result from the operands alone.
         value, exponent, next_exponent = Signal(48), Signal(signed(10)), Signal(signed(10))
-        next_value, for_digits, rounds = Signal(48), Signal(), Signal()
+        added, other, for_digits, rounds = Signal(48), Signal(48), Signal(), Signal()
         kind, sign, recurs, is_root = Signal(Kind), Signal(), Signal(), Signal()
         m.d.comb += [
-            next_value.eq(digits.digits << (len(value) - len(digits.digits))),
+            other.eq(digits.digits << (len(value) - len(digits.digits))),
             next_exponent.eq(exponent),
             normalise.value.eq(value),
             normalise.exponent.eq(exponent),
-            search.value.eq(next_value[-len(search.value) :]),
+            search.value.eq(other[-len(search.value) :]),
             search.exponent.eq(exponent),
             # Operands of the digits are normalised whatever their exponent, results only as far as it allows.
             search.unlimited.eq(for_digits),
             final.significand.eq(normalise.significand),
             final.guard.eq(normalise.guard),
             final.sticky.eq(normalise.sticky | (recurs & digits.inexact)),
-            final.exponent.eq(normalise.remaining),
+            final.exponent.eq(normalise.remaining[:8]),
+            final.overflows.eq(normalise.overflows),
             final.kind.eq(kind),
             final.sign.eq(sign),
             final.enable.eq(rounds),
@@ -182,9 +183,10 @@ class FloatUnit(wiring.Component):
             digits.doubled.eq(is_root & normalise.remaining[0]),
         ]
         m.d.sync += [
-            value.eq(next_value),
+            value.eq(added | other),
             exponent.eq(next_exponent),
-            normalise.bits.eq(search.bits),
+            # Sums pass the search by: they come late, and are never shifted to the right.
+            normalise.bits.eq(added[-len(search.bits) :] | search.bits),
             normalise.to_right.eq(search.to_right),
         ]
 
@@ -201,7 +203,8 @@ class FloatUnit(wiring.Component):
                     for_digits.eq(recursive),
                     next_exponent.eq(expect.exponent),
                     search.exponent.eq(expect.exponent),
-                    next_value.eq(Cat(Const(0, 15), add.rest, add.total)),
+                    added.eq(Cat(Const(0, 15), add.rest, add.total)),
+                    other.eq(0),
                     digits.start.eq(1),
                 ]
                 m.d.sync += [
@@ -211,7 +214,7 @@ class FloatUnit(wiring.Component):
                     is_root.eq(operation == Operation.SQUARE_ROOT),
                 ]
                 with m.If(operation == Operation.MULTIPLY):
-                    m.d.comb += next_value.eq(a.significand * b.significand)
+                    m.d.comb += [added.eq(0), other.eq(a.significand * b.significand)]
                 with m.If(self.cmd.valid & self.cmd.ready):
                     with m.If(fast):
                         m.d.sync += self.rsp.valid.eq(1)
