@@ -15,23 +15,24 @@ answered with 0x7FC00000 after 1 clock.
     function                                   | clocks from the command's to the response's first
     -------------------------------------------+--------------------------------------------------
     fsgnj fsgnjn fsgnjx fmin fmax              | 1
-    fle flt feq fclass fcvt.w.s                | 1
-    fadd fsub fmul fcvt.s.w                    | 2
-    fsqrt                                      | 12
-    fdiv                                       | 13
+    fle flt feq fclass                         | 1
+    fcvt.w.s                                   | 2
+    fadd fsub fmul fcvt.s.w                    | 3
+    fsqrt                                      | 13
+    fdiv                                       | 14
 
-So one command after the other is answered every 1, 2, 12 or 13 clocks, whatever the operands are.
+So one command after the other is answered every 1, 2, 3, 13 or 14 clocks, whatever the operands are.
 
 ::
 
-                    first clock                            last clock
-    command --+--> Compare ----------------------------------------------------------> response
-              +--> Align --> adder -------------------------------------------------->   |
-              |                   +--> value --> Normalise --> Round -------------------->
-              +--> multiplier ----+      ^           |
-              +--> Expect ----------- exponent       |
-                                         ^           v
-                                         +------- Digits
+              first clock            second clock               last clock
+    command --+--> Compare -----------------------------------------------------------> response
+              +--> Align -------> adder ---------------------------------------------->   |
+              |                     +---> value ---> Normalise ---> Round --------------->
+              +--> multiplier ------+       ^            |
+              +--> Expect ------------- exponent         |
+                                            ^            v
+                                            +--------- Digits
 
 Quotients and roots pass through Normalise three and two times: once for each operand, because it may be subnormal, and
 with their result.
@@ -59,11 +60,11 @@ __all__ = ["CLOCKS", "COMMAND", "FloatUnit"]
 
 #: Clocks from that in which a command is taken to the first one in which its response is valid.
 CLOCKS = {
-    "fadd": 2,
-    "fsub": 2,
-    "fmul": 2,
-    "fdiv": 13,
-    "fsqrt": 12,
+    "fadd": 3,
+    "fsub": 3,
+    "fmul": 3,
+    "fdiv": 14,
+    "fsqrt": 13,
     "fsgnj": 1,
     "fsgnjn": 1,
     "fsgnjx": 1,
@@ -73,17 +74,18 @@ CLOCKS = {
     "flt": 1,
     "feq": 1,
     "fclass": 1,
-    "fcvt.w.s": 1,
-    "fcvt.s.w": 2,
+    "fcvt.w.s": 2,
+    "fcvt.s.w": 3,
 }
 
-#: Operations whose result is normalised and rounded.
-_ROUNDED = (
+#: Operations whose result is not there at once.
+_SLOW = (
     Operation.ADD,
     Operation.SUBTRACT,
     Operation.MULTIPLY,
     Operation.DIVIDE,
     Operation.SQUARE_ROOT,
+    Operation.TO_INTEGER,
     Operation.FROM_INTEGER,
 )
 
@@ -130,6 +132,19 @@ class FloatUnit(wiring.Component):
             compare.variant.eq(mode),
             align.smaller.eq(compare.smaller),
             align.word.eq(command.a),
+            expect.smaller.eq(compare.smaller),
+            expect.equal.eq(compare.equal),
+            expect.large_exponent.eq(align.exponent),
+        ]
+        m.d.comb += [block.a.eq(a) for block in (align, expect)] + [block.b.eq(b) for block in (align, expect)]
+        m.d.comb += [compare.of_a.eq(a), compare.of_b.eq(b)]
+        m.d.comb += [block.operation.eq(operation) for block in (compare, align, expect)]
+
+        # What the first clock leaves for the second.
+        product, is_product, to_integer = Signal(48), Signal(), Signal()
+        saturated, largest = Signal(), Signal(2)
+        first_clock = [
+            add.operation.eq(operation),
             add.large.eq(align.large),
             add.small.eq(align.small),
             add.guard.eq(align.guard),
@@ -137,24 +152,13 @@ class FloatUnit(wiring.Component):
             add.opposed.eq(expect.opposed),
             add.negative.eq(a.sign),
             add.mode.eq(mode),
-            expect.smaller.eq(compare.smaller),
-            expect.equal.eq(compare.equal),
-            expect.large_exponent.eq(align.exponent),
+            product.eq(a.significand * b.significand),
+            is_product.eq(operation == Operation.MULTIPLY),
+            to_integer.eq(operation == Operation.TO_INTEGER),
+            saturated.eq(a.exponent > LARGEST_EXPONENT),
+            largest.eq(Cat(~a.sign | a.nan, a.sign & ~a.nan)),
         ]
-        m.d.comb += [block.a.eq(a) for block in (align, expect)] + [block.b.eq(b) for block in (align, expect)]
-        m.d.comb += [compare.of_a.eq(a), compare.of_b.eq(b)]
-        m.d.comb += [block.operation.eq(operation) for block in (compare, align, add, expect)]
-
-        # Results that are there at once, and 0 for all others.
-        fast, fast_result = Signal(), Signal(32)
-        m.d.comb += [fast.eq(1), fast_result.eq(compare.result)]
-        with m.Switch(operation):
-            with m.Case(*_ROUNDED):
-                m.d.comb += fast.eq(0)
-            with m.Case(Operation.TO_INTEGER):
-                saturated = (a.exponent > LARGEST_EXPONENT).replicate(32)
-                largest = Cat((~a.sign | a.nan).replicate(31), a.sign & ~a.nan)
-                m.d.comb += fast_result.eq(saturated & largest | ~saturated & add.total)
+        integer = Mux(saturated, Cat(largest[0].replicate(31), largest[1]), add.total)
 
         # What Normalise and Round work on, and what was known of the result from the operands alone.
         value, exponent, next_exponent = Signal(48), Signal(signed(10)), Signal(signed(10))
@@ -192,36 +196,43 @@ class FloatUnit(wiring.Component):
 
         with m.If(self.rsp.ready):
             m.d.sync += self.rsp.valid.eq(0)
-        with m.If(rounds | self.cmd.ready):
-            m.d.sync += self.rsp.payload.eq(final.result | Mux(rounds, 0, fast_result))
+        at_once, converts = Signal(32), Signal()  # 0 but for the results that are not rounded
+        with m.If(rounds | converts | self.cmd.ready):
+            m.d.sync += self.rsp.payload.eq(final.result | at_once)
         with m.FSM(name="state"):
             with m.State("IDLE"):
-                recursive = Signal()
                 m.d.comb += [
                     self.cmd.ready.eq(~self.rsp.valid | self.rsp.ready),
-                    recursive.eq((operation == Operation.DIVIDE) | (operation == Operation.SQUARE_ROOT)),
-                    for_digits.eq(recursive),
+                    at_once.eq(compare.result),
                     next_exponent.eq(expect.exponent),
-                    search.exponent.eq(expect.exponent),
-                    added.eq(Cat(Const(0, 15), add.rest, add.total)),
-                    other.eq(0),
                     digits.start.eq(1),
                 ]
                 m.d.sync += [
+                    *first_clock,
                     kind.eq(expect.kind),
                     sign.eq(expect.sign),
-                    recurs.eq(recursive),
+                    recurs.eq((operation == Operation.DIVIDE) | (operation == Operation.SQUARE_ROOT)),
                     is_root.eq(operation == Operation.SQUARE_ROOT),
                 ]
-                with m.If(operation == Operation.MULTIPLY):
-                    m.d.comb += [added.eq(0), other.eq(a.significand * b.significand)]
                 with m.If(self.cmd.valid & self.cmd.ready):
-                    with m.If(fast):
-                        m.d.sync += self.rsp.valid.eq(1)
-                    with m.Elif(recursive):
-                        m.next = "DIVIDEND"
-                    with m.Else():
-                        m.next = "ROUND"
+                    m.d.sync += self.rsp.valid.eq(1)
+                    with m.Switch(operation), m.Case(*_SLOW):
+                        m.d.sync += self.rsp.valid.eq(0)
+                        m.next = "SUM"
+            with m.State("SUM"):
+                m.d.comb += [
+                    for_digits.eq(recurs),
+                    converts.eq(to_integer),
+                    at_once.eq(Mux(to_integer, integer, 0)),
+                    added.eq(Mux(is_product, 0, Cat(Const(0, 15), add.rest, add.total))),
+                    other.eq(Mux(is_product, product, 0)),
+                ]
+                m.next = "ROUND"
+                with m.If(recurs):
+                    m.next = "DIVIDEND"
+                with m.If(to_integer):
+                    m.d.sync += self.rsp.valid.eq(1)
+                    m.next = "IDLE"
             with m.State("DIVIDEND"):
                 # Normalise has the dividend, or the radicand. Half the exponent of a root, rounded down: what is
                 # lost there doubles the radicand.
