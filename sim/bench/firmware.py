@@ -19,7 +19,7 @@ def _mean_clocks(bench, name):
 
 @measurement(
     "posit_clocks_classic",
-    "Pose by classic POSIT, hardware and approximations, at most 4 steps a branch",
+    "Pose by classic POSIT, hardware and approximations, at most 3 steps a branch",
     "clocks",
     target=at_most(15_000),
     needs_rtl=True,

@@ -34,10 +34,10 @@ STOP_ERROR = 1e-3
 """Where the classic form stops: a mean distance of 0.8 px. Vertices in whole pixels fit no pose much better, and with
 the default 1e-5, 0.008 px, every one of them takes all the steps there may be."""
 
-ITERATIONS = 4
+ITERATIONS = 3
 """Most steps of a branch of the classic form. The branch of the wrong pose seldom comes below STOP_ERROR, and so takes
-all of them. From the fourth on the right one gains little: the rotation's error over 60 of the markers is 1.4 degrees
-after 4 steps and 0.9 after 30, in the median."""
+all of them. The paper's printed example took 2. With the approximations the rotation's error over the markers, in the
+median, is 4.3 degrees after 2 steps, 2.3 after 3, 1.3 after 4 and 1.1 after 30; a fifth of them are wrong for good."""
 
 
 @dataclass(frozen=True, kw_only=True)
