@@ -81,8 +81,6 @@ def blob_layout(width, height):
             "x_max": x,
             "y_max": y,
             "area": area,
-            "sum_x": sum_x,
-            "sum_y": sum_y,
             "gap_area": area,
             "gap_sum_x": sum_x,
             "gap_sum_y": sum_y,

@@ -57,7 +57,7 @@ def blobs_of(captured, width, height):
     found = fields(captured, blob_layout(width, height))
     blobs = np.zeros(len(found), BLOB)
     blobs["box"] = np.stack([found[name] for name in ("x_min", "y_min", "x_max", "y_max")], axis=1)
-    for name in ("area", "sum_x", "sum_y", "gap_area", "gap_sum_x", "gap_sum_y", "euler"):
+    for name in ("area", "gap_area", "gap_sum_x", "gap_sum_y", "euler"):
         blobs[name] = found[name]
     for k, direction in enumerate(DIRECTIONS):
         coded = {name: found[f"extremes.e{k}.{name}"] for name in ("reach", "other")}

@@ -18,18 +18,18 @@ __all__ = ["BLOB", "find_blobs"]
 #: connected when the right one ended: for a convex outline, the holes. ``euler`` is 1 less the number of holes.
 BLOB = np.dtype([
     ("box", np.int32, 4),
-    ("area", np.int64), ("sum_x", np.int64), ("sum_y", np.int64),
+    ("area", np.int64),
     ("gap_area", np.int64), ("gap_sum_x", np.int64), ("gap_sum_y", np.int64), ("euler", np.int64),
     ("points", np.int32, (len(DIRECTIONS), 2)),
 ])  # fmt: skip
 
-_SUM_NAMES = ("area", "sum_x", "sum_y", "gap_area", "gap_sum_x", "gap_sum_y", "euler")
+_SUM_NAMES = ("area", "gap_area", "gap_sum_x", "gap_sum_y", "euler")
 _A = np.array([d[0] for d in DIRECTIONS], np.int64)
 _B = np.array([d[1] for d in DIRECTIONS], np.int64)
 _N = len(DIRECTIONS)
 _EAST, _SOUTH, _WEST, _NORTH = 0, 4, 8, 12
-# One row of features: seven sums, then v, x, y of each direction.
-_SUMS = 7
+# One row of features: five sums, then v, x, y of each direction.
+_SUMS = 5
 _FEATURES = _SUMS + 3 * _N
 # One row of a descriptor: slot, has a run in this row, its earliest run, its latest run, that run's last column.
 _SLOT, _HAS, _EARLIEST, _LATEST, _END = range(5)
@@ -56,10 +56,8 @@ def _runs(row, start, stop):
 def _set_run(feature, x0, x1, y, touches):
     length = x1 - x0 + 1
     feature[0] = length
-    feature[1] = (x0 + x1) * length // 2
-    feature[2] = y * length
-    feature[3:6] = 0
-    feature[6] = 1 - touches
+    feature[1:4] = 0
+    feature[4] = 1 - touches
     for k in range(_N):
         x = x1 if _A[k] > 0 else x0
         feature[_SUMS + 3 * k] = _A[k] * x + _B[k] * y
@@ -79,9 +77,9 @@ def _combine(into, other):
 @numba.njit(cache=True)
 def _add_gap(feature, x0, x1, y):
     length = x1 - x0 + 1
-    feature[3] += length
-    feature[4] += (x0 + x1) * length // 2
-    feature[5] += y * length
+    feature[1] += length
+    feature[2] += (x0 + x1) * length // 2
+    feature[3] += y * length
 
 
 @numba.njit(cache=True)

@@ -114,7 +114,6 @@ def find_stack(images):
     above = frame * (rows + 1)
     blobs["box"][:, 1::2] -= above[:, np.newaxis]
     blobs["points"][:, :, 1] -= above[:, np.newaxis]
-    blobs["sum_y"] -= blobs["area"] * above
     blobs["gap_sum_y"] -= blobs["gap_area"] * above
     return frame, blobs
 

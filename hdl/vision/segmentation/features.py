@@ -1,8 +1,9 @@
 """Operations of the control in, completed components out: the features of every open component."""
 
-from amaranth import Cat, Module, Mux, Signal
-from amaranth.lib import wiring
+from amaranth import Cat, Module, Mux, Signal, signed, unsigned
+from amaranth.lib import data, wiring
 from amaranth.lib.fifo import SyncFIFOBuffered
+from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from hdl.config import DIRECTIONS
@@ -136,7 +137,7 @@ class Features(wiring.Component):
         m.d.comb += [control.eq(stages[2]), control.read.eq(stages[0].read)]
 
         sums = self._run_sums(m, operation)
-        supports = self._run_supports(m)
+        supports = self._run_supports(m, operation)
 
         # Clock 3: combine; or show the first operand.
         m.d.comb += self.o.valid.eq(outputs[2].any())
@@ -146,71 +147,80 @@ class Features(wiring.Component):
             m.d.comb += self.o.p.kind.eq(ItemKind.END)
         with m.Else():
             m.d.comb += self.o.p.kind.eq(ItemKind.ABORT)
-        for name, (leaf, shape) in sums.items():
-            m.submodules[name] = lane = SumLane(shape=shape, depth=depth)
-            m.d.comb += [lane.control.eq(control), lane.leaf.eq(leaf), self.o.p[name].eq(lane.first)]
+        lanes = {name: (SumLane, shape, leaf, self.o.p[name]) for name, (leaf, shape) in sums.items()}
         for k, (leaf, support) in enumerate(supports):
-            m.submodules[f"extreme{k}"] = lane = ExtremeLane(shape=support.shape, depth=depth)
-            m.d.comb += [lane.control.eq(control), lane.leaf.eq(leaf), self.o.p.extremes[f"e{k}"].eq(lane.first)]
+            lanes[f"extreme{k}"] = (ExtremeLane, support.shape, leaf, self.o.p.extremes[f"e{k}"])
+        word = data.StructLayout({name: shape for name, (_, shape, _, _) in lanes.items()})
+        m.submodules.slots = slots = Memory(shape=word, depth=depth, init=[])
+        read, write = slots.read_port(), slots.write_port()
+        m.d.comb += [read.addr.eq(control.read), write.addr.eq(control.slot), write.en.eq(control.write)]
+        for name, (kind, shape, leaf, output) in lanes.items():
+            m.submodules[name] = lane = kind(shape=shape, depth=depth)
+            m.d.comb += [
+                lane.control.eq(control),
+                lane.leaf.eq(leaf),
+                lane.fetched.eq(read.data[name]),
+                write.data[name].eq(lane.result),
+                output.eq(lane.first),
+            ]
         extremes = self.o.p.extremes
         for name, k in (("x_max", 0), ("y_max", 4), ("x_min", 8), ("y_min", 12)):
             reach = extremes[f"e{k}"].reach
             m.d.comb += self.o.p[name].eq(reach if name.endswith("max") else ~reach)
         return m
 
+    @staticmethod
+    def _delayed(m, value, clocks):
+        """``value`` after 0 to ``clocks`` clocks."""
+        stages = [value]
+        for _ in range(clocks):
+            stages.append(Signal.like(value, reset_less=True))
+            m.d.sync += stages[-1].eq(stages[-2])
+        return stages
+
     def _run_sums(self, m, operation):
         """Sums of the run and of the gap before it, and its Euler number, three clocks after the part is issued."""
-        area_bits, x_bits, y_bits = sum_bits(self._width, self._height)
-        y = [Signal.like(operation.y, name=f"y{k}") for k in (1, 2, 3)]
-        for stage, previous in zip(y, [operation.y, *y], strict=False):
-            m.d.sync += stage.eq(previous)
-        bounds = [Signal.like(Cat(operation.start, operation.stop), name=f"bounds{k}") for k in (1, 2)]
-        for stage, previous in zip(bounds, [Cat(operation.start, operation.stop), *bounds], strict=False):
-            m.d.sync += stage.eq(previous)
-        self._bounds, self._y = bounds[1], y
-        leaves = {}
+        area_shape, x_shape, y_shape = (unsigned(bits) for bits in sum_bits(self._width, self._height))
+        lengths = {}
+        gap_ends = Signal(len(operation.start) + 1, reset_less=True)
         for prefix, x0, x1, used in (
             ("", operation.start, operation.stop, 1),
             ("gap_", operation.gap_start, operation.start - 1, operation.gap),
         ):
-            first, length, ends = (
-                Signal(len(operation.start) + 1, name=f"{prefix}{n}") for n in ("first", "length", "ends")
-            )
-            valid = Signal(name=f"{prefix}valid")
-            last = Signal(len(operation.start), name=f"{prefix}stop")
-            length_2 = Signal.like(length, name=f"{prefix}length2")
-            area = Signal(area_bits, name=f"{prefix}area3")
-            sum_x = Signal(x_bits, name=f"{prefix}sum_x3")
-            sum_y = Signal(y_bits, name=f"{prefix}sum_y3")
-            m.d.sync += [
-                first.eq(x0),
-                last.eq(x1),
-                valid.eq(used),
-                length_2.eq(Mux(valid, last - first + 1, 0)),
-                ends.eq(first + last),
-                area.eq(length_2),
-                sum_x.eq((ends * length_2) >> 1),
-                sum_y.eq(y[1] * length_2),
-            ]
-            leaves[f"{prefix}area"] = (area, area_bits)
-            leaves[f"{prefix}sum_x"] = (sum_x, x_bits)
-            leaves[f"{prefix}sum_y"] = (sum_y, y_bits)
-        euler_shape = self.o.p.euler.shape()
-        euler = [Signal(euler_shape, name=f"euler{k}") for k in (1, 2, 3)]
-        for stage, previous in zip(euler, [1 - operation.touches, *euler], strict=False):
-            m.d.sync += stage.eq(previous)
-        leaves["euler"] = (euler[2], euler_shape)
-        return leaves
+            first, last = (Signal(len(operation.start), name=f"{prefix}{n}", reset_less=True) for n in ("first", "last"))
+            length = Signal(len(operation.start) + 1, name=f"{prefix}length")
+            is_used = Signal(name=f"{prefix}used")
+            m.d.sync += [first.eq(x0), last.eq(x1), is_used.eq(used), length.eq(Mux(is_used, last - first + 1, 0))]
+            lengths[prefix] = self._delayed(m, length, 1)
+            if prefix:
+                m.d.sync += gap_ends.eq(first + last)
+        gap_sum_x, gap_sum_y = Signal(x_shape, reset_less=True), Signal(y_shape, reset_less=True)
+        euler = Signal(signed(len(operation.touches) + 1), reset_less=True)
+        m.d.sync += [
+            gap_sum_x.eq((gap_ends * lengths["gap_"][0]) >> 1),
+            gap_sum_y.eq(self._delayed(m, operation.y, 2)[2] * lengths["gap_"][0]),
+            euler.eq(1 - self._delayed(m, operation.touches, 2)[2]),
+        ]
+        return {
+            "area": (lengths[""][1], area_shape),
+            "gap_area": (lengths["gap_"][1], area_shape),
+            "gap_sum_x": (gap_sum_x, x_shape),
+            "gap_sum_y": (gap_sum_y, y_shape),
+            "euler": (euler, self.o.p.euler.shape()),
+        }
 
-    def _run_supports(self, m):
+    def _run_supports(self, m, operation):
         """The run's furthest pixel in each direction, three clocks after the part is issued."""
-        half = len(self._bounds) // 2
-        start, stop = self._bounds[:half], self._bounds[half:]
+        *_, start, start_3 = self._delayed(m, operation.start, 3)
+        *_, stop, stop_3 = self._delayed(m, operation.stop, 3)
+        *_, y, y_3 = self._delayed(m, operation.y, 3)
         leaves = []
         for k, direction in enumerate(DIRECTIONS):
             support = Support(direction, width=self._width, height=self._height)
-            leaf = Signal(support.shape, name=f"leaf{k}")
-            coded = support.encode(stop if direction[0] > 0 else start, self._y[1])
-            m.d.sync += [leaf.reach.eq(coded["reach"]), leaf.other.eq(coded["other"])]
+            leaf = Signal(support.shape, name=f"leaf{k}", reset_less=True)
+            is_right = direction[0] > 0
+            m.d.sync += leaf.reach.eq(support.encode(stop if is_right else start, y)["reach"])
+            # One register for all, where the coordinate is the same.
+            m.d.comb += leaf.other.eq(support.encode(stop_3 if is_right else start_3, y_3)["other"])
             leaves.append((leaf, support))
         return leaves

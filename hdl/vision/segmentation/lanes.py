@@ -1,7 +1,7 @@
-"""One feature of all slots: its memory, and the accumulator that runs and merged slots are added to."""
+"""One feature of all slots: the accumulator that runs and merged slots are added to. The slots are in Features' memory."""
 
 from amaranth import Module, Mux, Signal
-from amaranth.lib import data, memory, wiring
+from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
@@ -25,46 +25,47 @@ def control_layout(depth):
 
 
 class _Lane(wiring.Component):
-    """Registers and memory common to both kinds. ``combine(m, first, second, fresh)`` returns the result.
+    """Registers common to both kinds. ``_combine(first, second, fresh)`` returns the result.
 
     Members
     -------
     control : In(control_layout(depth))
     leaf : In(shape)
         The feature of the run alone.
+    fetched : In(shape)
+        What the memory has read.
     first : Out(shape)
         The first operand.
+    result : Out(shape)
+        What is written.
     """
 
     def __init__(self, *, shape, depth):
         self._shape = shape
-        self._depth = depth
         super().__init__(
             {
                 "control": In(control_layout(depth)),
                 "leaf": In(shape),
+                "fetched": In(shape),
                 "first": Out(shape),
+                "result": Out(shape),
             }
         )
 
     def elaborate(self, platform):
         m = Module()
         control = self.control
-        m.submodules.slots = slots = memory.Memory(shape=self._shape, depth=self._depth, init=[])
-        read = slots.read_port()
-        write = slots.write_port()
-        held, stored, second = (Signal(self._shape, name=n) for n in ("held", "stored", "second"))
+        # Without a reset, so that it can be the register at the memory's output.
+        stored = Signal(self._shape, reset_less=True)
+        held, second = Signal(self._shape, reset_less=True), Signal(self._shape)
         m.d.comb += [
-            read.addr.eq(control.read),
             self.first.eq(Mux(control.first_held, held, stored)),
             second.eq(Mux(control.second_stored, stored, self.leaf)),
-            write.addr.eq(control.slot),
-            write.data.eq(self._combine(self.first, second, control.fresh)),
-            write.en.eq(control.write),
+            self.result.eq(self._combine(self.first, second, control.fresh)),
         ]
-        m.d.sync += stored.eq(read.data)
+        m.d.sync += stored.eq(self.fetched)
         with m.If(control.write | control.load):
-            m.d.sync += held.eq(write.data)
+            m.d.sync += held.eq(self.result)
         return m
 
 
@@ -79,6 +80,7 @@ class SumLane(_Lane):
 class ExtremeLane(_Lane):
     """A pixel furthest in one direction; of several, the one that came first stays."""
 
-    def _combine(self, first, second, fresh):
-        further = fresh | (second.reach > first.reach)
+    @staticmethod
+    def _combine(first, second, fresh):
+        further = fresh | (first.reach < second.reach)
         return Mux(further, second, first)

@@ -1,0 +1,87 @@
+"""Place and route for an ECP5-85 of speed grade 6, by Yosys and nextpnr: LUTs, block RAMs and clock speed."""
+
+import json
+import pathlib
+import re
+import shutil
+
+from build.synth.harness import ports_of, shell
+from build.tools import nextpnr_ecp5, yosys
+
+__all__ = ["place_and_route"]
+
+_HERE = pathlib.Path(__file__).parent
+
+
+def place_and_route(top, sources, folder, *, target_mhz, seed=1):
+    """Speed and size of a design behind registers.
+
+    Parameters
+    ----------
+    top : str
+        Its top module, with a clock ``clk``.
+    sources : dict
+        File name -> Verilog.
+    folder : path
+        Where to work: it is made, and keeps the logs.
+    target_mhz : float
+        What nextpnr strives for; to miss it is no error.
+    seed : int
+        Of the placement: another one gives a few per cent more or less.
+
+    Returns
+    -------
+    dict
+        ``fmax_mhz``, ``lut`` (with carry bits, as nextpnr counts: TRELLIS_COMB), ``ff``, ``bram``, ``mult18``, and
+        ``critical_path``: the cells of the slowest path with the nanoseconds until each.
+
+    Raises
+    ------
+    ToolError
+        If a tool fails.
+    """
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in sources.items():
+        (folder / name).write_text(text)
+    shutil.copy(_HERE / "order_map.v", folder)
+    (folder / "shell.v").write_text(shell(top, ports_of(top, sources, folder)))
+    script = (
+        f"read_verilog {' '.join(sources)} shell.v",
+        "hierarchy -check -top shell",
+        "proc",
+        "techmap -map order_map.v",
+        "synth_ecp5 -top shell -json shell.json",
+    )
+    yosys("\n".join(script) + "\n", folder)
+    nextpnr_ecp5(
+        [
+            *("--85k", "--package", "CABGA381", "--speed", "6", "--json", "shell.json", "--report", "report.json"),
+            *("--freq", target_mhz, "--seed", seed, "--timing-allow-fail", "--lpf-allow-unconstrained"),
+        ],
+        folder,
+    )
+    return _read(json.loads((folder / "report.json").read_text()))
+
+
+def _read(report):
+    used = {kind: number["used"] for kind, number in report["utilization"].items()}
+    ((_, clock),) = report["fmax"].items()
+    return {
+        "fmax_mhz": round(clock["achieved"], 2),
+        "lut": used["TRELLIS_COMB"],
+        "ff": used["TRELLIS_FF"],
+        "bram": used["DP16KD"],
+        "mult18": used["MULT18X18D"],
+        "critical_path": _critical(report["critical_paths"]),
+    }
+
+
+def _critical(paths):
+    """``[[nanoseconds, cell], ...]`` of the slowest path from register to register."""
+    path = next(path for path in paths if re.match("posedge", path["from"]) and re.match("posedge", path["to"]))
+    cells, time = [], 0.0
+    for step in path["path"]:
+        time += step["delay"]
+        cells.append([round(time, 2), step["to"]["cell"]])
+    return cells
