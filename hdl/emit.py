@@ -75,6 +75,7 @@ BLOCKS = {
     "system_id": _block("hdl.peripherals.system_id:SystemId"),
     "float_unit": _block("hdl.float.unit:FloatUnit"),
     "lcd": _block("hdl.peripherals.lcd:Lcd"),
+    "crossing": _block("hdl.camera.crossing:Crossing"),
     "ram": _block("hdl.system.ram:Ram"),
     "decoder": _block("hdl.system.system:decoder"),
     "register_bridge": _block("hdl.system.system:register_bridge"),
