@@ -76,6 +76,7 @@ BLOCKS = {
     "float_unit": _block("hdl.float.unit:FloatUnit"),
     "lcd": _block("hdl.peripherals.lcd:Lcd"),
     "crossing": _block("hdl.camera.crossing:Crossing"),
+    "ov7670": _block("hdl.camera.ov7670:Ov7670"),
     "ram": _block("hdl.system.ram:Ram"),
     "decoder": _block("hdl.system.system:decoder"),
     "register_bridge": _block("hdl.system.system:register_bridge"),

@@ -11,12 +11,12 @@ given nine clocks and a STOP, and this transfer fails. Who asks may try again.
     SCL ~~~~\\______/~~\\______/~~ ...                ____/~~~~~~   3/5 low, 2/5 high, counted from when it is high
            START                                          STOP, then 3/5 free
 
-Numbers: a bit takes 5 parts of at least 1 / (5 ``rate_hz``) each, and what SCL takes to rise. At 400 kHz low, high, START
-hold, STOP set-up and bus free time are at least 1.5, 1, 1, 1 and 1.5 us, at 100 kHz 6, 4, 4, 4 and 6 us; the
-specification wants 1.3, 0.6, 0.6, 0.6 and 1.3, or 4.7, 4, 4, 4 and 4.7 us. Data are set up for 2 parts. Lines are read
-through two registers.
+Numbers: a bit takes 5 parts of at least 1 / (5 ``rate_hz``) each, and what SCL takes to rise. Low, high, START hold,
+STOP set-up and bus free time are at least 1.5, 1, 1, 1 and 1.5 us at 400 kHz, and 6, 4, 4, 4 and 6 us at 100 kHz; the
+specification wants 1.3, 0.6, 0.6, 0.6 and 1.3, and 4.7, 4, 4, 4 and 4.7 us. Data are set up for 2 parts. Lines are
+read through two registers.
 
-Source: NXP's UM10204, table 10; OmniVision's SCCB is the same for writes, and its ninth bit is acknowledged in practice.
+Source: NXP's UM10204, table 10. OmniVision's SCCB is the same for writes; its cameras do acknowledge the ninth bit.
 
 Model: :class:`sim.models.i2c.I2cSlave` is who is addressed.
 """
