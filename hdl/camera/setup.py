@@ -180,12 +180,9 @@ class CameraSetup(wiring.Component):
             m.next = state
 
         wanted, failures = Signal(), Signal(range(self._attempts))
-        with m.If(self.restart):
-            m.d.sync += wanted.eq(1)
         with m.FSM(name="setup"):
             with m.State("BEGIN"):
-                m.d.sync += [wanted.eq(0), index.eq(0), failures.eq(0), self.done.eq(0), self.failed.eq(0)]
-                m.d.sync += self.reset_n.eq(0)
+                m.d.sync += [wanted.eq(0), index.eq(0), failures.eq(0), self.reset_n.eq(0)]
                 pause(self._reset_ticks, "RESET")
             with m.State("RESET"), m.If(ticks == 0):
                 m.d.sync += self.reset_n.eq(1)
@@ -195,7 +192,7 @@ class CameraSetup(wiring.Component):
             with m.State("FETCH"):
                 m.next = "LOOK"
                 with m.If(index == len(words)):
-                    m.d.sync += self.done.eq(1)
+                    m.d.sync += self.done.eq(~wanted)
                     m.next = "REST"
                 with m.If(wanted):
                     m.next = "BEGIN"
@@ -214,7 +211,7 @@ class CameraSetup(wiring.Component):
                 with m.If(~i2c.failed):
                     m.d.sync += [index.eq(index + 1), failures.eq(0)]
                 with m.Elif(failures == self._attempts - 1):
-                    m.d.sync += self.failed.eq(1)
+                    m.d.sync += self.failed.eq(~wanted)
                     m.next = "REST"
                 with m.Else():
                     m.d.sync += failures.eq(failures + 1)
@@ -225,4 +222,6 @@ class CameraSetup(wiring.Component):
                     m.next = "FETCH"
                 with m.If(wanted):
                     m.next = "BEGIN"
+        with m.If(self.restart):
+            m.d.sync += [wanted.eq(1), self.done.eq(0), self.failed.eq(0)]
         return m

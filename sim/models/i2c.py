@@ -1,7 +1,7 @@
 """A slave on an I2C bus that holds registers, and takes nobody's word for the timing.
 
-It is told every change of the two lines, says whether it pulls one of them, and raises :class:`Violation` where
-the specification forbids what the master did.
+It is told every change of the two lines, says whether it pulls one of them, and raises :class:`Violation`
+where the specification forbids what the master did. A START within a transfer ends it.
 
 Source: NXP's UM10204, table 10, standard mode and fast mode.
 """
@@ -21,6 +21,7 @@ class Timing:
 
     low: int
     high: int
+    start_setup: int
     start_hold: int
     data_setup: int
     stop_setup: int
@@ -28,8 +29,8 @@ class Timing:
     period: int
 
 
-STANDARD = Timing(4700, 4000, 4000, 250, 4000, 4700, 10_000)
-FAST = Timing(1300, 600, 600, 100, 600, 1300, 2_500)
+STANDARD = Timing(4700, 4000, 4700, 4000, 250, 4000, 4700, 10_000)
+FAST = Timing(1300, 600, 600, 600, 100, 600, 1300, 2_500)
 
 
 class I2cSlave:
@@ -57,17 +58,22 @@ class I2cSlave:
         self.pulls_sda = False
         self.holds_scl_until = 0  #: ns
         self._lines = (1, 1)
-        self._scl_since = self._sda_since = self._stopped = self._started = float("-inf")
-        self._rise = float("-inf")
+        self.master_is_reset = False
         self._bits = None  # of this byte; None between STOP and START
         self._bytes = []
 
-    def lose_state(self):
-        """The master was reset: what the lines did until now, and do now, is nobody's fault."""
+    @property
+    def master_is_reset(self):
+        """What the lines do meanwhile is nobody's fault."""
+        return self._master_is_reset
+
+    @master_is_reset.setter
+    def master_is_reset(self, is_reset):
+        self._master_is_reset = is_reset
         self._scl_since = self._sda_since = self._stopped = self._started = self._rise = float("-inf")
 
     def _need(self, condition, text, now):
-        if not condition:
+        if not (condition or self._master_is_reset):
             raise Violation(f"{text}, at {now} ns")
 
     def lines(self, now, scl, sda):
@@ -98,9 +104,9 @@ class I2cSlave:
                 self._fall(now)
 
     def _start(self, now):
-        self._need(self._bits is None, "START came within a transfer", now)
+        self._need(now - self._rise >= self._timing.start_setup, "START was not set up", now)
         self._need(now - self._stopped >= self._timing.free, "the bus was not free for long enough", now)
-        self._bits, self._bytes, self._started = [], [], now
+        self._bits, self._bytes, self._started, self.pulls_sda = [], [], now, False
         self.transfers += 1
 
     def _stop(self, now):

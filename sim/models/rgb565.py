@@ -27,17 +27,8 @@ def as_received(picture):
 
 def rgb565(data, href, vsync):
     """Pixels of a bus, given its levels in each clock: colours (N, 3), and bool (N,) ``sof`` and ``eol``."""
-    data, href, vsync = np.asarray(data), np.asarray(href, bool), np.asarray(vsync, bool)
-    colours, sof, eol, starts = [np.zeros((0, 3), np.uint8)], [], [], False
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], href, [False]]).astype(int)))
-    before = 0
-    for begin, end in edges.reshape(-1, 2):
-        starts |= bool(vsync[before:begin].any())
-        row = data[begin:end]
-        count = len(row) // 2
-        colours.append(_colours(row[0 : 2 * count : 2], row[1 : 2 * count : 2]))
-        sof += [starts and k == 0 for k in range(count)]
-        eol += [2 * k + 2 == len(row) for k in range(count)]
-        starts &= count == 0
-        before = begin
-    return np.concatenate(colours), np.array(sof, bool), np.array(eol, bool)
+    data, href = np.asarray(data), np.asarray(href, bool)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], href, [False]]).astype(int))).reshape(-1, 2)
+    second = np.concatenate([np.arange(begin + 1, end, 2) for begin, end in edges])  # Clocks of second bytes.
+    frames = np.concatenate([[0], np.cumsum(vsync)[second]])
+    return _colours(data[second - 1], data[second]), np.diff(frames) > 0, np.isin(second + 1, edges[:, 1])
