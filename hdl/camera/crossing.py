@@ -27,6 +27,7 @@ Model: :func:`sim.models.crossing.frames_lost` says what may be missing.
 
 from amaranth import Cat, Module, Signal
 from amaranth.lib import wiring
+from amaranth.lib.cdc import FFSynchronizer
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
@@ -44,13 +45,6 @@ def _gray(binary):
 
 def _binary(gray):
     return Cat(gray[bit:].xor() for bit in range(len(gray)))
-
-
-def _synchronised(m, domain, value, name):
-    """The value in another domain, behind two registers."""
-    first, second = (Signal(len(value), name=f"{name}{k}", reset_less=True) for k in range(2))
-    m.d[domain] += [first.eq(value), second.eq(first)]
-    return second
 
 
 class Crossing(wiring.Component):
@@ -96,9 +90,15 @@ class Crossing(wiring.Component):
         bits = len(write.addr) + 1
         written, written_gray = Signal(bits, reset_less=True), Signal(bits, reset_less=True)
         taken, taken_gray = Signal(bits), Signal(bits)
-        written_seen = _synchronised(m, "sync", written_gray, "written_seen")
-        taken_seen = _synchronised(m, "pixel", taken_gray, "taken_seen")
-        has_loss = Signal(reset_less=True)
+        written_seen, taken_seen, has_loss, has_loss_seen = (
+            Signal(bits),
+            Signal(bits),
+            Signal(reset_less=True),
+            Signal(),
+        )
+        m.submodules.written = FFSynchronizer(written_gray, written_seen, o_domain="sync")
+        m.submodules.taken = FFSynchronizer(taken_gray, taken_seen, o_domain="pixel")
+        m.submodules.losses = FFSynchronizer(has_loss, has_loss_seen, o_domain="sync")
         self._write(m, self.i, write, written, written_gray, taken_seen, has_loss)
 
         flushing, available, next_taken = Signal(range(_FLUSH + 1), init=_FLUSH), Signal(), Signal(bits)
@@ -110,7 +110,7 @@ class Crossing(wiring.Component):
         m.d.sync += [taken.eq(next_taken), taken_gray.eq(_gray(next_taken)), self.o.valid.eq(available)]
         m.d.comb += [read.addr.eq(taken), self.o.payload.eq(read.data)]
 
-        has_loss_seen, had_loss = _synchronised(m, "sync", has_loss, "has_loss_seen"), Signal(reset_less=True)
+        had_loss = Signal(reset_less=True)
         m.d.sync += [had_loss.eq(has_loss_seen), self.lost.eq(has_loss_seen ^ had_loss)]
         return m
 
