@@ -89,6 +89,9 @@ class _Bench:
             levels = {name: int(handle.value) for name, handle in handles.items()}
             data = 0 if levels["rw"] else int(dut.lcd_in.value)
             self.panel.pins(now - self.period // 2, data=data, driven=not levels["rw"], **levels)
+            if levels["e"]:  # Its answer comes before the next edge of the clock, but not at once.
+                await Timer(400 - self.period // 2, unit="ns")
+                now = round(get_sim_time("ns"))
             output = self.panel.output(now)
             if output is None:
                 floating ^= 0xFF
