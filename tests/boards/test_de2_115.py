@@ -24,7 +24,7 @@ PERIOD_NS = 10**9 // CLOCK_HZ
 #: A little slower than the board's clock, and no multiple of it.
 PIXEL_PS = 503_172
 PATIENCE = 200_000
-THRESHOLD, EXPOSURE_STEPS = 115, 60
+THRESHOLD, EXPOSURE_STEPS = 70, 60  # The registers begin with 120.
 SWITCHES = THRESHOLD | EXPOSURE_STEPS << 9 | 1 << 16
 SECOND = 90_000
 SETTINGS = Settings(threshold=THRESHOLD)
@@ -96,6 +96,7 @@ def test_from_camera_to_serial_line():
     ]  # fmt: skip
     captured = play("verilator", program, [frame.image for frame in frames], camera)
     check_camera(captured)
+    assert all((found(frame.image, SETTINGS) != found(frame.image)).any() for frame in frames)
     told = lines(captured)
     first = check_frame(told[:2], 0, frames[0].image, camera)
     second = check_frame(told[2:], 1, frames[1].image, camera)

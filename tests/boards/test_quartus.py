@@ -36,6 +36,8 @@ def tcl(text, *commands, answers=None):
     for name in commands:
         interpreter.createcommand(name, play(name))
     interpreter.eval("rename source {}; rename exec {}; rename open {}")
+    # In assignments Quartus takes KEY[0] for a name, without braces.
+    interpreter.eval(r'proc unknown {name} {if {[string is digit $name]} {return "\[$name\]"}; error "no $name"}')
     interpreter.eval(text)
     return calls
 
