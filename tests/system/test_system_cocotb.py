@@ -22,6 +22,7 @@ from sim.engine.frames import camera_pixels
 from tests.hdl import harness
 from tests.shapes import marker_frame
 from tests.system.firmware_bench import found, frame_lines, statuses
+from tests.system.serial_line import levels, received
 from tests.system.tb_system import Op
 
 COLUMNS, ROWS = 64, 48
@@ -56,38 +57,14 @@ def play(simulator, program, frames):
     )
 
 
-def bits(captured):
-    """Level of the serial line in each clock."""
-    period = 10**9 // CLOCK_HZ
-    at, level = captured["line"].T
-    return np.repeat(level, np.diff(np.append(at // period, captured["end"])))
-
-
-def received(level):
-    """Bytes of a serial line, every bit of which must last for its time."""
-    text, at = [], 0
-    while at < len(level):
-        if level[at]:
-            at += 1
-            continue
-        frame = level[at : at + 10 * DIVISOR]
-        if len(frame) < 10 * DIVISOR:
-            break  # Cut by the reset.
-        cells = frame.reshape(10, DIVISOR)
-        assert (cells == cells[:, :1]).all() and cells[9, 0] == 1, f"a torn byte at clock {at}"
-        text.append(sum(int(bit) << k for k, bit in enumerate(cells[1:9, 0])))
-        at += 10 * DIVISOR
-    return bytes(text)
-
-
 def sessions(captured):
     """For each reset: (bytes on the serial line since then, TIME of the first pixels of the frames fed since)."""
-    level, marks = bits(captured), captured["marks"].tolist()
+    level, marks = levels(captured["line"], 10**9 // CLOCK_HZ, captured["end"]), captured["marks"].tolist()
     starts = [clock for op, clock in marks if op == Op.RESET]
     found = []
     for start, stop in zip(starts, [*starts[1:], len(level)], strict=True):
         fed = [clock - start for op, clock in marks if op == Op.FEED and start <= clock < stop]
-        found.append((received(level[start : stop - 2]), fed))
+        found.append((received(level[start : stop - 2], DIVISOR), fed))
     return found
 
 

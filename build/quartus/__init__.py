@@ -1,0 +1,1 @@
+"""The Quartus project of the DE2-115. See ``python -m build.quartus``."""

@@ -1,0 +1,1 @@
+"""Behavioural models, in Verilog, of the vendors' cells that boards use."""

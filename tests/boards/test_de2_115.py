@@ -1,0 +1,137 @@
+"""The DE2-115 in cocotb: rendered pictures through a D5M that had to be set up, and poses out of the serial line."""
+
+import numpy as np
+import pytest
+
+from firmware.layout import settings_bytes
+from firmware.reference import Camera
+from firmware.reference.sentence import parse
+from firmware.toolchain.images import build
+from hdl.boards.de2_115.top import De2115
+from hdl.camera.d5m_table import D5M_EXPOSURE, D5M_GAIN
+from hdl.config import SensorConfig
+from sim.models.d5m import D5mCamera
+from sim.results import Settings
+from sim.scene import random_marker_scene, render
+from tests.boards.board_bench import simulate_board
+from tests.boards.tb_de2_115 import Op
+from tests.shapes import marker_frame
+from tests.system.firmware_bench import found, frame_lines
+from tests.system.serial_line import levels, received
+
+CLOCK_HZ, DIVISOR = 2_000_000, 4
+PERIOD_NS = 10**9 // CLOCK_HZ
+#: A little slower than the board's clock, and no multiple of it.
+PIXEL_PS = 503_172
+PATIENCE = 200_000
+THRESHOLD, EXPOSURE_STEPS = 70, 60  # The registers begin with 120.
+SWITCHES = THRESHOLD | EXPOSURE_STEPS << 9 | 1 << 16
+SECOND = 90_000
+SETTINGS = Settings(threshold=THRESHOLD)
+
+
+def play(simulator, program, pictures, camera, **firmware):
+    """Run a program on the board; ``pictures`` are grey frames of one size, ``camera`` what the firmware thinks."""
+    rows, columns = pictures[0].shape
+    image = build("sensor")
+    settings = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
+    settings |= {"uart_divisor": DIVISOR, "tick_clocks": 20_000, "display_ticks": 1, "status_ticks": 0} | firmware
+    words = image.patched("settings", settings_bytes(image, **settings)).words
+    board = De2115(
+        config=SensorConfig(width=columns, height=rows), program=words.tolist(), clock_hz=CLOCK_HZ, ms_us=50,
+        second_clocks=SECOND, start_clocks=200,
+    )  # fmt: skip
+    arrays = {
+        "program": [(*step, 0, 0)[:3] for step in program],
+        "period_ns": PERIOD_NS,
+        "pixel_ps": PIXEL_PS,
+        "divisor": DIVISOR,
+        "blank": 12,
+    }
+    for number, picture in enumerate(pictures):
+        arrays[f"picture.{number}"] = np.repeat(picture[..., None], 3, axis=2)
+    return simulate_board(board, "de2_115", simulator, arrays, cells=["altpll"], size=f"{columns}x{rows}")
+
+
+def lines(captured):
+    text = received(levels(captured["line"], PERIOD_NS, captured["end"]), DIVISOR).decode("ascii")
+    status, *rest, end = text.split("\r\n")
+    assert parse(status).name == "RPSTA" and end == ""
+    return rest
+
+
+def check_frame(told, number, picture, camera):
+    """Sentences of a frame, equal to the reference's of what the model finds; only the time is taken from them."""
+    time = parse(told[0]).fields[1]
+    clocks = -(-int(time.replace(".", "")) * CLOCK_HZ // 1_000_000)
+    assert told == frame_lines(number, clocks, found(picture, SETTINGS), 0, camera=camera, clock_hz=CLOCK_HZ)
+    return clocks
+
+
+def decimal(segments, places):
+    """The number that digits show; places from the lowest."""
+    shapes = {0x3F: 0, 0x06: 1, 0x5B: 2, 0x4F: 3, 0x66: 4, 0x6D: 5, 0x7D: 6, 0x07: 7, 0x7F: 8, 0x6F: 9}
+    return sum(shapes[~(segments >> 7 * place) & 0x7F] * 10**power for power, place in enumerate(places))
+
+
+def check_camera(captured):
+    camera = D5mCamera()
+    camera.bus.writes.extend(map(tuple, captured["writes"].tolist()))
+    assert camera.is_set_up
+    assert camera.registers[D5M_EXPOSURE] == 8 * EXPOSURE_STEPS + 4 and camera.registers[D5M_GAIN] == 16
+    assert set(captured["xclkin_ns"].tolist()) == {2 * PERIOD_NS}
+
+
+def test_from_camera_to_serial_line():
+    """Pictures before the camera is set up are cut; then one is told as it must be, one is cut, one is told again."""
+    scenes = [random_marker_scene(seed, 160, 120, (45, 60), (10, 40), noise_sigma=2.0) for seed in (11, 12)]
+    frames = [render(scene) for scene in scenes]
+    lens = scenes[0].lens
+    camera = Camera(lens.fx, lens.fy, lens.cx, lens.cy)
+    program = [
+        (Op.SWITCHES, SWITCHES), (Op.PLAY, 0), (Op.CAMERA, PATIENCE), (Op.LINES, 1, PATIENCE), (Op.LOOK,),
+        (Op.PLAY, 0), (Op.LINES, 3, PATIENCE), (Op.PLAY, 1, 100), (Op.PLAY, 1), (Op.LINES, 5, PATIENCE),
+        (Op.SHOWN, 8 + 34 + 34, PATIENCE), (Op.LOOK,), (Op.KEY, 0b01), (Op.IDLE, 500), (Op.KEY, 0b11),
+        (Op.CAMERA, PATIENCE), (Op.IDLE, 30_000), (Op.LOOK,),
+    ]  # fmt: skip
+    captured = play("verilator", program, [frame.image for frame in frames], camera)
+    check_camera(captured)
+    assert all((found(frame.image, SETTINGS) != found(frame.image)).any() for frame in frames)
+    told = lines(captured)
+    first = check_frame(told[:2], 0, frames[0].image, camera)
+    second = check_frame(told[2:], 1, frames[1].image, camera)
+    assert second - first > 2 * 160 * 2 * 120 * PIXEL_PS / 1000 / PERIOD_NS
+    for frame, sentence in zip(frames, (told[1], told[3]), strict=True):
+        (truth,) = frame.truth
+        t = np.array([float(field) for field in parse(sentence).fields[4:7]])
+        assert np.linalg.norm(t - truth["t_mm"]) < 0.08 * np.linalg.norm(truth["t_mm"])
+    before, after, again = captured["log"].tolist()
+    assert before[0] & 0b111 == after[0] & 0b111 == again[0] & 0b111 == 0b001
+    assert before[1] == SWITCHES and after[0] >> 8 == 1
+    assert decimal(after[2], [4, 5]) == 1  # Marker.
+    cut_before = decimal(before[2], [0, 1, 2, 3])
+    assert cut_before == 1 and decimal(after[2], [0, 1, 2, 3]) == cut_before + 1
+    table = before[3]
+    assert after[3] == table and again[3] == 2 * table
+
+
+def test_short(simulator):
+    """One picture, as small as can be, so that Icarus does not take minutes."""
+    picture = marker_frame(48, 64, [(20, 9, 30, 20)])
+    camera = Camera(80.0, 80.0, 31.5, 23.5)
+    program = [
+        (Op.SWITCHES, SWITCHES),
+        (Op.CAMERA, PATIENCE),
+        (Op.LINES, 1, PATIENCE),
+        (Op.PLAY, 0),
+        (Op.LINES, 3, PATIENCE),
+    ]
+    captured = play(simulator, program, [picture], camera, display_ticks=0)
+    check_camera(captured)
+    check_frame(lines(captured), 0, picture, camera)
+
+
+@pytest.mark.parametrize("arguments, phrase", [({"clock_hz": 1_500_000}, "clock_hz must be")])
+def test_constructor(arguments, phrase):
+    with pytest.raises(ValueError, match=phrase):
+        De2115(**arguments)
