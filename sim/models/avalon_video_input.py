@@ -81,7 +81,7 @@ def avalon_video_input(beats, default_columns):
     errors = {kind: set() for kind in ERRORS}
     errors["stray"].update(range(starts[0] if starts else count))
     size, sizes, parts = None, [], [np.zeros((3, 0), dtype=np.int64)]
-    for start, after in zip(starts, [*starts[1:], count], strict=True):
+    for start, after in zip(starts, [*starts, count][1:], strict=True):
         end = next((at for at in range(start, after) if beats[at][2]), None)
         if end is None and after < count:
             errors["unended"].add(after)
