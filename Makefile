@@ -4,7 +4,7 @@ PYTHON = python3.11
 JOBS = 2
 PY = .venv/bin/python
 
-.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs clean
+.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs ip clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list
@@ -42,6 +42,10 @@ exhaustive: .venv/installed ## Run the tests that try every case, which takes lo
 
 docs: .venv/installed ## Write the register map for people and for C: build/out/registers
 	$(PY) -m hdl.regs.docs $(ARGS)
+
+ip: .venv/installed ## Package the hardware for Platform Designer, FuseSoC and IP-XACT: build/out/ip
+	$(PY) -m firmware.toolchain sensor
+	$(PY) -m build.ip --program build/out/firmware/sensor.bin $(ARGS)
 
 clean: ## Remove all products (.venv stays)
 	rm -rf build/out

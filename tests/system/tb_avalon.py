@@ -1,8 +1,8 @@
-"""Cocotb testbench of the sensor behind Avalon interfaces: cocotbext-avalon's source, monitor and master play a program.
+"""Cocotb testbench of the sensor behind Avalon interfaces: cocotbext-avalon's source, monitor and master at work.
 
-It runs inside the simulator and plays what test_avalon.py wrote into STREAM_FOLDER. The source knows
-``readyLatency`` 1 and ends every packet that it starts; those that lack an end are tried in test_avalon_video_input.py. The master makes
-one transfer at a time, so reads in every clock are driven here.
+It runs inside the simulator and plays the program that test_avalon.py wrote into STREAM_FOLDER. The source knows
+``readyLatency`` 1 and ends every packet that it starts; those that lack an end are tried in
+test_avalon_video_input.py. The master makes one transfer at a time, so reads in every clock are driven here.
 """
 
 import enum
@@ -33,9 +33,9 @@ class Op(enum.IntEnum):
     READS = 6  #: so many words from a byte address on, one in each clock, into the log
     UNTIL = 7  #: read a byte address until these bits are set
     IRQ = 8  #: wait for the interrupt
-    NO_IRQ = 9  #: log the interrupt's level
+    LEVEL = 9  #: log the interrupt's level
     RESET = 10  #: for so many clocks; whatever is being sent is lost
-    SEEN = 11  #: log how many packets and beats the monitor has seen
+    SEEN = 11  #: log how many packets the monitor has seen
 
 
 class _Source(AvalonSTSource):
@@ -117,14 +117,14 @@ class _Bench:
                 await self.until(first, second)
             case Op.IRQ:
                 await self.irq()
-            case Op.NO_IRQ:
+            case Op.LEVEL:
                 await ReadOnly()
                 self.log.append(int(self._dut.irq.value))
                 await self._falling
             case Op.RESET:
                 await self.reset(first)
             case Op.SEEN:
-                self.log += [self._monitor.count()]
+                self.log.append(self._monitor.count())
 
 
 @cocotb.test()

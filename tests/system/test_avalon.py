@@ -51,7 +51,7 @@ class Program:
     """What the source sends and software does, and beside it what every read must bring."""
 
     def __init__(self):
-        self._rows, self._packets, self.expected = [], [], []
+        self._rows, self.packets, self.expected = [], [], []
         self._forget()
 
     def _forget(self):
@@ -62,8 +62,8 @@ class Program:
 
     def send(self, beats):
         symbols = [word >> shift & 255 for word, *_ in beats for shift in (0, 8, 16)]
-        self.do(Op.SEND, len(self._packets))
-        self._packets.append(symbols)
+        self.do(Op.SEND, len(self.packets))
+        self.packets.append(symbols)
         self._sent += beats
 
     def write(self, name, value, enables=ALL_BYTES):
@@ -158,14 +158,14 @@ class Program:
         return errors
 
     def run(self, simulator):
-        sizes = [len(symbols) for symbols in self._packets]
+        sizes = [len(symbols) for symbols in self.packets]
         captured = simulate(
             emit.AVALON,
             cached_verilog(emit.AVALON, *SIZE),
             simulator,
             {
                 "program": np.array(self._rows),
-                "packets": np.concatenate(self._packets),
+                "packets": np.concatenate(self.packets),
                 "packet_sizes": sizes,
                 "patience": 20_000,
             },
@@ -189,7 +189,7 @@ def verilator():
 
 
 def test_frames(verilator):
-    """Single, with idle clocks, back to back, without control packets, between user packets; then a reset within one."""
+    """Single, with idle clocks, back to back, without control packets, after user packets; then a reset within one."""
     program = Program()
     program.start()
     program.read("video_size", 0)
@@ -206,7 +206,7 @@ def test_frames(verilator):
     errors = program.counters()
     assert not any(errors.values())
     program.do(Op.SEEN)
-    program.expected.append(("packets seen by the monitor", len(program._packets)))
+    program.expected.append(("packets seen by the monitor", len(program.packets)))
 
     program.send(video_packet(scene(5)))
     program.do(Op.CLOCKS, 1000)
@@ -215,7 +215,7 @@ def test_frames(verilator):
     colour = np.stack([scene(6), scene(6) // 2 + 60, scene(6)], axis=2)
     program.send(video_packet(colour))
     found.append(program.published())
-    program.do(Op.NO_IRQ)
+    program.do(Op.LEVEL)
     program.expected.append(("interrupt after it was cleared", 0))
     assert all(len(result.markers) == 1 for result in found), [len(result.markers) for result in found]
     program.run(verilator)
@@ -250,7 +250,7 @@ def test_wrong_packets(verilator):
 
 
 def test_registers(simulator):
-    """Whole words are written, parts refused and counted; software takes over the size that the video has; then a reset."""
+    """Whole words are written, parts refused and counted; software takes over the video's size; then a reset."""
     program = Program()
     program.start()
     program.write("threshold", 77)
