@@ -4,6 +4,7 @@ import pathlib
 
 from hdl.emit import AVALON
 from hdl.regs.map import avalon_maps
+from sim.engine.frames import marker_words
 from sim.models.avalon_video_input import control_packet, video_packet
 from sim.models.sensor import ModelSensor
 from sim.scene import random_marker_scene, render
@@ -18,23 +19,12 @@ _WRITE, _EXPECT, _SEND = range(3)
 _PATIENCE = 5000
 
 
-def _point(x, y):
-    return int(x) | int(y) << 16
-
-
 def _transfers(config, result, columns, rows):
     """(operation, address or clocks, value) of everything that software does."""
     maps = avalon_maps(config)
     sensor = {entry.name: entry.offset for entry in (*maps["sensor"][1].registers, *maps["sensor"][1].windows)}
     base, inputs = maps["video_input"]
     size = columns | rows << 16
-    marker = result.markers[0]
-    words = [
-        *(_point(*vertex) for vertex in marker["vertices"]),
-        *(_point(*corner) for corner in marker["box"].reshape(2, 2)),
-        int(marker["area"]),
-        int(marker["gap_area"]),
-    ]
     published = 1 << maps["sensor"][1].register("irq_enable").field("published").low
     return [
         (_EXPECT, sensor["id"], maps["sensor"][1].register("id").field("magic").reset),
@@ -45,7 +35,10 @@ def _transfers(config, result, columns, rows):
         (_EXPECT, base + inputs.register("packet_errors").offset, 0),
         (_EXPECT, sensor["frames_complete"], 1),
         (_EXPECT, sensor["markers"], len(result.markers)),
-        *((_EXPECT, sensor["marker_window"] + 4 * place, word) for place, word in enumerate(words)),
+        *(
+            (_EXPECT, sensor["marker_window"] + 4 * place, word)
+            for place, word in enumerate(marker_words(result.markers[0]))
+        ),
     ]
 
 

@@ -12,6 +12,7 @@ from hdl import emit
 from hdl.config import SensorConfig
 from hdl.regs.map import avalon_maps
 from sim.engine.build import cached_verilog
+from sim.engine.frames import marker_words
 from sim.models.avalon_video_input import ERRORS, avalon_video_input, control_packet, packet, video_packet
 from sim.models.sensor import ModelSensor
 from sim.scene import random_marker_scene, render
@@ -99,20 +100,7 @@ class Program:
         for name in ("markers", "corners", "blobs"):
             self.read(name, len(getattr(result, name)))
 
-        def point(x, y):
-            return int(x) | int(y) << 16
-
-        words = [
-            word
-            for marker in result.markers
-            for word in (
-                *(point(*vertex) for vertex in marker["vertices"]),
-                *(point(*corner) for corner in marker["box"].reshape(2, 2)),
-                int(marker["area"]),
-                int(marker["gap_area"]),
-            )
-        ]
-        self.reads("marker_window", words)
+        self.reads("marker_window", [word for marker in result.markers for word in marker_words(marker)])
         corners = result.corners[:20]
         self.reads(
             "corner_window",
@@ -120,7 +108,7 @@ class Program:
                 word
                 for corner in corners
                 for word in (
-                    point(corner["x"], corner["y"]),
+                    int(corner["x"]) | int(corner["y"]) << 16,
                     int(corner["score"]) | int(corner["arc"]) << 8 | int(corner["bright"]) << 16,
                 )
             ],
