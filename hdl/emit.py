@@ -25,7 +25,7 @@ from amaranth import Const, Elaboratable, Value
 from amaranth.back import verilog
 from amaranth.lib import wiring
 
-__all__ = ["BLOCKS", "SYSTEM", "TOP", "build", "emit", "parts", "to_verilog", "words_of"]
+__all__ = ["AVALON", "BLOCKS", "SYSTEM", "TOP", "build", "emit", "parts", "to_verilog", "words_of"]
 
 
 def _block(path, **sizes):
@@ -45,6 +45,9 @@ def _block(path, **sizes):
 
 #: The block that is the whole sensor.
 TOP = "rasterpose"
+
+#: The block that is the sensor behind Avalon interfaces.
+AVALON = "rasterpose_avalon"
 
 #: The block that is the sensor with its processor.
 SYSTEM = "rasterpose_system"
@@ -85,7 +88,10 @@ BLOCKS = {
     "decoder": _block("hdl.system.system:decoder"),
     "register_bridge": _block("hdl.system.system:register_bridge"),
     "register_hub": _block("hdl.system.system:register_hub", **_FRAME),
+    "avalon_video_input": _block("hdl.ip.avalon_video_input:AvalonVideoInput"),
+    "avalon_registers": _block("hdl.ip.avalon_registers:AvalonRegisters", addr_width=15),
     TOP: _block("hdl.sensor:sensor", **_FRAME),
+    AVALON: _block("hdl.ip.rasterpose_avalon:rasterpose_avalon", **_FRAME),
     SYSTEM: _block("hdl.system.system:system", **_FRAME),
 }
 

@@ -23,11 +23,14 @@ from hdl.regs.map import system_tree
 __all__ = ["main", "write_docs"]
 
 
-def write_docs(config, folder):
-    """Write pages, C header and IP-XACT for a :class:`~hdl.config.SensorConfig`, and return their paths."""
+def write_docs(config, folder, tree=system_tree):
+    """Write pages, C header and IP-XACT for a :class:`~hdl.config.SensorConfig`, and return their paths.
+
+    ``tree`` makes the nodes of what is documented.
+    """
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    tree = system_tree(config)
+    tree = tree(config)
     page, header, tools = folder / "html" / "index.html", folder / "rasterpose_regs.h", folder / "rasterpose.xml"
     HTMLExporter().export(tree, str(page.parent), title="RasterPose registers")
     IPXACTExporter(vendor="rasterpose", library="rasterpose", version="0.1").export(tree, str(tools))

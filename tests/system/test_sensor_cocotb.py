@@ -7,7 +7,7 @@ from hdl import emit
 from hdl.config import SensorConfig
 from hdl.regs.map import sensor_map
 from sim.engine import random_idle
-from sim.engine.frames import camera_pixels
+from sim.engine.frames import camera_pixels, marker_words
 from sim.models.sensor import ModelSensor
 from tests.hdl import harness
 from tests.shapes import marker_frame, marker_grid
@@ -32,10 +32,7 @@ def encoded(number, result, first, last):
     for corner in result.corners:
         detail = (int(corner[name]) << low for name, low in (("score", 0), ("arc", 8), ("bright", 16)))
         words += [*points([corner["x"], corner["y"]]), sum(detail)]
-    items = [
-        [*points(marker["vertices"]), *points(marker["box"]), int(marker["area"]), int(marker["gap_area"])]
-        for marker in result.markers
-    ]
+    items = [marker_words(marker) for marker in result.markers]
     words += [word for item in items for word in item]
     for k, marker in enumerate(result.markers):  # The paper's port, and the window in between.
         coordinates = marker["vertices"].reshape(-1).tolist()

@@ -1,0 +1,1 @@
+"""The sensor behind Avalon interfaces, for Platform Designer and whoever else speaks them."""
