@@ -3,26 +3,29 @@
 Contract: a corner stays if it is greater than each of its 8 neighbours in the order (score, arc, and of two
 that are equal in both the one earlier in the frame); pixels that are no corners do not count, and both
 polarities compete. So of equal neighbours exactly one stays. With ``suppress`` clear all corners stay. What
-stays comes out in raster order, then one ``END``; a frame that was cut gives one ``ABORT`` before anything of
-the next frame.
+stays comes out in raster order, then one ``END``. A frame that was cut after its first scored position gives
+one ``ABORT`` instead, before anything of the next frame; of one that was cut sooner nothing is heard.
 
 A corner is decided when the pixel to the lower right of it is known. Below the frame's last row that pixel is
-made up: the block then runs over one more row by itself, one position a clock, and what arrives meanwhile
-waits in a queue. Positions in rows without centres (the first six of a frame) are not queued, so a frame of W
-x H pixels asks for (H - 6) W clocks and W + 2 for its end, which is less than its W H pixels; one without
-centres asks for one clock. So the queue never holds more than width + 4 entries, whatever the sizes of the
-frames and wherever they are cut.
+made up: the block then runs over one more row by itself, one position a clock, until it reads the mark of the
+last column. Meanwhile nothing may come that it would have to look at: no scored position, and no last one. A
+next frame of the same size keeps that of its own, because its first six rows are not scored, and so does any
+other that starts W + 64 clocks later, which the framer sees to; frames that are cut early do not matter.
 
 ::
 
-    position -> queue -> [waiting] -> [1 right neighbour] -> [2 three in a row] -> [3] -> [4 rows] -> item
-                                               |                                     ^       |
-                                               '--- read --> row of corners by column        |
-                                                                       ^---------- write ----'
+    position -> [1 centre | best of left and centre] -> [2 best of three] -> compare -> [3] -> item
+                   |                                                            |        |
+                   '-- read -> [row of bests by column] -> [2 the same above] --'        |
+                                          ^------------------- write --------------------'
 
-Numbers: one position and one item a clock; latency 7 clocks from the position of (x + 1, y + 1) on. Two
-memories: ``width`` x 26 bits for the corners of one row, each with the maximum of its row's three, and the
-queue of 17 bits by ``width`` + 8, rounded up to a power of two. Four comparisons of 12 bits.
+Algorithm: of every pixel the greatest key of it and its left and right neighbour is kept, and whether that is
+its own. So one comparison between two rows tells both ways: a pixel that leads its row leads the one above if
+its key is greater than the best there, and stays behind it otherwise; and the pixel above stays if it led so
+far and the best below it is not greater.
+
+Numbers: one position and one item a clock; latency 3 clocks from the position of (x + 1, y + 1) on. One memory
+of ``width`` x 15 bits. Three comparisons of 12 bits.
 
 Model: :func:`sim.models.fast.suppress` is bit-exact.
 """
@@ -34,7 +37,7 @@ from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
 from hdl.pixels import ItemKind, unstalled
-from hdl.vision.fast import Position
+from hdl.vision.corner_test import Position
 from hdl.vision.window import check_size
 
 __all__ = ["Suppression", "corner_item"]
@@ -60,12 +63,12 @@ def corner_item(width, height):
 
 
 class _Stored(data.Struct):
-    """A corner in the row buffer, or none."""
+    """What is kept of a pixel until the row below it has come."""
 
-    key: unsigned(_KEY_BITS)
+    best: unsigned(_KEY_BITS)  #: greatest key of it, its left and its right neighbour; its own without suppression
+    leads: unsigned(1)  #: it is a corner, and greater than its neighbours in its row and above
     bright: unsigned(1)
-    leads: unsigned(1)  #: greater than its neighbours in its row and above
-    row_best: unsigned(_KEY_BITS)  #: greatest key of it, its left and its right neighbour
+    eol: unsigned(1)
 
 
 class Suppression(wiring.Component):
@@ -101,147 +104,105 @@ class Suppression(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        # The queue, whose oldest entries are in the memory's output and in ``position``.
-        pointer = unsigned(bits_for(self._width + 7))
-        m.submodules.queue = queue = Memory(shape=Position, depth=1 << pointer.width, init=[])
-        push, pull = queue.write_port(), queue.read_port()
-        pushed, pulled, is_pulled = Signal(pointer), Signal(pointer), Signal()
-        waiting, position = Signal(), Signal(Position)
-        take = Signal()
-        arriving, is_free = self.i.payload, ~waiting | take
+        position = self.i.payload
+
+        # One step a clock: a position of the frame, or of the row below it. That has no corners, whatever the
+        # rest of its keys may be.
+        arrives, below, step = Signal(), Signal(), Signal()
+        ends, aborts, is_done = Signal(), Signal(), Signal()
+        suppress, eol = Signal(), Signal()
+        key = Cat(position.arc, position.score, position.corner & ~below)
         m.d.comb += [
-            push.en.eq(self.i.valid & (arriving.scored | arriving.last | arriving.cut)),
-            push.addr.eq(pushed),
-            push.data.eq(arriving),
-            pull.en.eq((pushed != pulled) & (~is_pulled | is_free)),
-            pull.addr.eq(pulled),
+            arrives.eq(self.i.valid & position.scored),
+            step.eq(arrives | below),
+            eol.eq(position.eol & ~below),
+            aborts.eq(self.i.valid & position.cut),
+            ends.eq(is_done | (self.i.valid & position.last & ~position.scored & ~below)),
         ]
-        m.d.sync += [
-            pushed.eq(pushed + push.en),
-            pulled.eq(pulled + pull.en),
-            is_pulled.eq(pull.en | is_pulled & ~is_free),
-        ]
-        with m.If(is_free):
-            m.d.sync += [waiting.eq(is_pulled), position.eq(pull.data)]
+        with m.If(is_done):
+            m.d.sync += below.eq(0)
+        with m.Elif(arrives & position.last):
+            m.d.sync += below.eq(1)
+        with m.If(arrives):
+            m.d.sync += suppress.eq(position.suppress)
 
-        # One step a clock: a position of the frame, or of the row below it, or the end of it.
-        context_shape = data.StructLayout(
-            {
-                "key": _KEY_BITS,
-                "bright": 1,
-                "suppress": 1,
-                "is_top": 1,
-                "column": range(self._width + 1),
-            }
-        )
-        step, ends, aborts = Signal(), Signal(), Signal()
-        key = Signal(_KEY_BITS)
-        column, columns = Signal(range(self._width + 1)), Signal(range(self._width + 1))
-        is_top = Signal(init=1)
-        next_column = Signal.like(column)
-        m.d.comb += next_column.eq(column + 1)
-        with m.FSM(name="frame"):
-            with m.State("INSIDE"):
-                m.d.comb += [
-                    take.eq(waiting),
-                    step.eq(waiting & position.scored),
-                    aborts.eq(waiting & position.cut),
-                    ends.eq(waiting & position.last & ~position.scored & ~position.cut),
-                    key.eq(Cat(position.arc, position.score, position.corner)),
-                ]
-                with m.If(waiting & position.last):
-                    m.d.sync += columns.eq(next_column)
-                    with m.If(position.scored):
-                        m.next = "BELOW"
-                    with m.Elif(position.cut):
-                        m.next = "END"
-            with m.State("BELOW"):
-                m.d.comb += step.eq(1)
-                with m.If(column == columns):
-                    m.next = "END"
-            with m.State("END"):
-                m.d.comb += ends.eq(1)
-                m.next = "INSIDE"
-
-        # The step before, within this frame: its right neighbour is the present one. The first position of a
-        # row never is a corner, so it may stand for what lies to the right of the row before.
-        earlier, has_earlier = Signal(context_shape, reset_less=True), Signal()
+        # The step before: its right neighbour is the present one. The first position of a row never is a
+        # corner, so it may stand for what lies to the right of the row before. Equal keys: the left one stays.
+        centre = Signal(_KEY_BITS, reset_less=True)
+        bright, is_last, starts, is_top, is_below = (Signal(reset_less=True) for _ in range(5))
+        left_best, beats_left = Signal(_KEY_BITS, reset_less=True), Signal(reset_less=True)
+        has_centre, column, in_top = Signal(), Signal(bits_for(self._width - 1)), Signal(init=1)
+        yields, is_best = Signal(), Signal()
+        m.d.comb += [yields.eq(key > centre), is_best.eq(key > left_best)]
         with m.If(step):
             m.d.sync += [
-                earlier.key.eq(key),
-                earlier.bright.eq(position.bright),
-                earlier.column.eq(column),
-                earlier.is_top.eq(is_top),
-                has_earlier.eq(1),
-                column.eq(next_column),
+                centre.eq(key),
+                beats_left.eq(yields),
+                left_best.eq(Mux(yields | ~suppress, key, centre)),
+                bright.eq(position.bright),
+                is_last.eq(eol),
+                starts.eq(column == 0),
+                is_top.eq(in_top),
+                is_below.eq(below),
+                has_centre.eq(1),
+                column.eq(Mux(eol, 0, column + 1)),
             ]
-            with m.If(take):
-                m.d.sync += earlier.suppress.eq(position.suppress)
-                with m.If(position.eol):
-                    m.d.sync += [column.eq(0), is_top.eq(0)]
-        with m.Elif(ends | aborts):
-            m.d.sync += [has_earlier.eq(0), column.eq(0), is_top.eq(1)]
+            with m.If(eol):
+                m.d.sync += in_top.eq(0)
+        with m.If(ends | aborts):
+            m.d.sync += [has_centre.eq(0), column.eq(0), in_top.eq(1)]
 
-        valid, ending, aborting, context = [step & has_earlier], [ends], [aborts], [earlier]
-        for k in range(1, 4):
-            valid.append(Signal(name=f"valid_{k}"))
-            ending.append(Signal(name=f"ending_{k}"))
-            aborting.append(Signal(name=f"aborting_{k}"))
-            context.append(Signal(context_shape, name=f"context_{k}", reset_less=True))
-            m.d.sync += [stage[k].eq(stage[k - 1]) for stage in (valid, ending, aborting, context)]
-
-        # Stages 1 and 2: its row. Equal keys: the left one stays.
-        yields, had_yielded = Signal(reset_less=True), Signal(reset_less=True)
-        pair, pair_before = Signal(_KEY_BITS, reset_less=True), Signal(_KEY_BITS, reset_less=True)
-        is_right_greater = key > earlier.key
-        m.d.sync += [yields.eq(is_right_greater), pair.eq(Mux(is_right_greater, key, earlier.key))]
-        leads_row, row_best = Signal(reset_less=True), Signal(_KEY_BITS, reset_less=True)
-        with m.If(valid[1]):
-            m.d.sync += [
-                had_yielded.eq(yields),
-                pair_before.eq(pair),
-                leads_row.eq(had_yielded & ~yields),
-                row_best.eq(Mux(pair > pair_before, pair, pair_before)),
-            ]
-
-        # Stages 2 and 3: what the buffer holds about the row above.
         m.submodules.row = row = Memory(shape=_Stored, depth=self._width, init=[])
         read, write = row.read_port(), row.write_port()
-        above = Signal(_Stored, reset_less=True)
-        m.d.comb += [read.en.eq(valid[1]), read.addr.eq(context[1].column)]
-        present = context[3]
-        leads_row_3, row_best_3 = Signal(reset_less=True), Signal(_KEY_BITS, reset_less=True)
-        m.d.sync += [above.eq(read.data), leads_row_3.eq(leads_row), row_best_3.eq(row_best)]
+        m.d.comb += [read.en.eq(step), read.addr.eq(column)]
 
-        # Stage 4: both rows are decided against each other. Equal keys: the upper one stays.
-        m.d.sync += [
-            write.en.eq(valid[3]),
-            write.addr.eq(present.column),
-            write.data.key.eq(present.key),
-            write.data.bright.eq(present.bright),
-            write.data.leads.eq(~present.suppress | leads_row_3 & (present.is_top | (present.key > above.row_best))),
-            write.data.row_best.eq(row_best_3),
-        ]
-        is_item, is_corner = Signal(), above.key[-1]
-        m.d.comb += is_item.eq(
-            valid[3] & ~present.is_top & is_corner & above.leads & (~present.suppress | (above.key >= row_best_3))
-        )
-
-        item, y = self.o.payload, Signal.like(self.o.payload.y)
-        m.d.sync += self.o.valid.eq(is_item | ending[3] | aborting[3])
-        with m.If(valid[3] & (present.column == 0)):
-            m.d.sync += y.eq(Mux(present.is_top, 2, y + 1))
-        with m.If(is_item):
+        # What is known of the centre, and of the pixel above it.
+        valid, leads_row = Signal(), Signal(reset_less=True)
+        present, above = Signal(_Stored, reset_less=True), Signal(_Stored, reset_less=True)
+        marks = Cat(starts, is_top, is_below)
+        present_marks = Signal.like(marks, reset_less=True)
+        m.d.sync += valid.eq(step & has_centre & ~is_done)
+        with m.If(step):
             m.d.sync += [
-                item.kind.eq(ItemKind.ITEM),
-                item.x.eq(present.column - 3),
-                item.y.eq(y),
-                item.score.eq(above.key[3:11]),
-                item.arc.eq(above.key[:3] + 9),
-                item.bright.eq(above.bright),
+                above.eq(read.data),
+                present.best.eq(Mux(is_best & suppress, key, left_best)),
+                present.bright.eq(bright),
+                present.eol.eq(is_last),
+                leads_row.eq(centre[-1] & (beats_left & ~yields | ~suppress)),
+                present_marks.eq(marks),
             ]
-        with m.Elif(ending[3]):
-            m.d.sync += item.kind.eq(ItemKind.END)
-        with m.Elif(aborting[3]):
-            m.d.sync += item.kind.eq(ItemKind.ABORT)
+        is_first, in_top_row, in_row_below = present_marks
+
+        # Both rows are decided against each other. Equal keys: the upper one stays.
+        is_greater, is_item = Signal(), Signal()
+        decided, is_decided = Signal(_Stored, reset_less=True), Signal()
+        item = Signal.like(self.o.payload, reset_less=True)
+        x = Mux(is_first, 0, item.x + 1)
+        m.d.comb += [
+            is_greater.eq((present.best > above.best) & suppress),
+            is_item.eq(valid & ~in_top_row & above.leads & ~is_greater),
+            is_done.eq(valid & in_row_below & above.eol),
+            write.en.eq(is_decided),
+            write.addr.eq(item.x),
+            write.data.eq(decided),
+        ]
+        m.d.sync += [
+            is_decided.eq(valid),
+            decided.eq(present),
+            decided.leads.eq(leads_row & (is_greater | in_top_row | ~suppress)),
+        ]
+        with m.If(valid):
+            m.d.sync += item.x.eq(x)
+            with m.If(is_first):
+                m.d.sync += item.y.eq(Mux(in_top_row, 2, item.y + 1))
+
+        m.d.comb += self.o.payload.eq(item)
+        ending, aborting = Signal(), Signal()
+        m.d.sync += [ending.eq(ends), aborting.eq(aborts), self.o.valid.eq(is_item | ending | aborting)]
+        m.d.sync += [
+            item.score.eq(above.best[3:11]),
+            item.arc.eq(above.best[:3] + 9),
+            item.bright.eq(above.bright),
+            item.kind.eq(Mux(ending, ItemKind.END, Mux(aborting, ItemKind.ABORT, ItemKind.ITEM))),
+        ]
         return m

@@ -1,5 +1,5 @@
 """FAST corners, their scores and their 3 x 3 suppression, on whole frames: the truth for
-``hdl/vision/fast.py`` and ``hdl/vision/suppression.py``.
+``hdl/vision/fast.py``, what it is made of, and ``hdl/vision/suppression.py``.
 
 Both polarities are worked out in full and nothing here knows the hardware's shortcuts. Grey levels are uint8
 (H, W); a frame may have any size, also none that has corners.

@@ -5,6 +5,8 @@ import pytest
 
 from hdl.pixels import ItemKind
 from hdl.vision.corners import Corners, corner_item
+from hdl.vision.delay import Delay
+from hdl.vision.framer import SETTLING
 from hdl.vision.suppression import Suppression
 from hdl.vision.window import Window
 from sim import scene
@@ -25,11 +27,13 @@ def corners_block(width, height):
 
 
 def expected(frames, settings=None, cut=None):
-    """What must be sent: (kind, x, y, score, arc, bright) or (kind,); of a cut frame, None and ABORT."""
+    """What must be sent: (kind, x, y, score, arc, bright) or (kind,); of a frame that is cut, None and ABORT,
+    or nothing if it had no row that can have corners."""
     items = []
     for k, grey in enumerate(frames):
         if cut and cut[k] is not None and cut[k] < grey.size:
-            items += [None, (ABORT,)]
+            if grey.shape[1] > 6 and cut[k] > 6 * grey.shape[1]:
+                items += [None, (ABORT,)]
             continue
         own = DEFAULT | (settings[k] if settings else {})
         n = min(max(own["n"], 9), 12)
@@ -57,6 +61,16 @@ def pixels(frames, cut):
     return [min(grey.size, length or grey.size) for grey, length in zip(frames, lengths, strict=True)]
 
 
+def settling(frames, cut):
+    """Idle clocks before each frame that the framer sees to: a complete frame must settle before the size changes."""
+    settles, waits = None, []
+    for grey, length in zip(frames, pixels(frames, cut), strict=True):
+        is_other = settles is not None and grey.shape != settles
+        waits.append(settles[1] + SETTLING if is_other else 0)
+        settles = grey.shape if length == grey.size else None if is_other else settles
+    return waits
+
+
 def play(player, frames, settings=None, cut=None, idle=None, size=(WIDTH, HEIGHT)):
     """Frames through a simulator or an engine, each with its own settings and perhaps cut, against the model.
 
@@ -69,6 +83,8 @@ def play(player, frames, settings=None, cut=None, idle=None, size=(WIDTH, HEIGHT
             config[name].append((first, value))
             if first + 1 < start[k + 1]:
                 config[name].append((first + 1, value ^ OTHER[name]))
+    idle = np.zeros(start[-1], int) if idle is None else idle.copy()
+    idle[start[:-1]] += settling(frames, cut)
     inputs = {"i": (grey_beats(frames, cut=cut), idle)}
     if isinstance(player, StreamEngine):
         run = player.run(inputs, config, drain_clocks=900)
@@ -154,18 +170,14 @@ def test_sizes(engine, shape):
     play(engine, [arcs(1, (HEIGHT, WIDTH)), *frames, arcs(2, (HEIGHT, WIDTH))])
 
 
-def test_small_frames_while_the_last_row_of_a_large_one_is_suppressed(engine):
-    """END and ABORT come exactly once each and in order, as fast as frames can be cut or end."""
-    large, tiny, small = arcs(1, (HEIGHT, WIDTH)), np.zeros((1, 1), np.uint8), arcs(2, (7, 7))
-    for others, cut in (
-        ([tiny] * 100, [None] * 100),
-        ([small] * 100, [1] * 99 + [None]),
-        ([small, tiny] * 50, [1, None] * 50),
-        ([small] * 20, [None] * 20),
-        ([small] * 40, [None, 45] * 20),
-        ([large] * 30, [*range(1, 30), None]),
-    ):
-        play(engine, [large, *others, large], cut=[None, *cut, None])
+def test_cut_frames_while_the_last_row_of_another_is_suppressed(engine):
+    """Neither what a frame that is cut early brings, nor when, may touch what the frame before still has to say."""
+    large, small = arcs(1, (HEIGHT, WIDTH)), arcs(2, (7, 7))
+    early = [1] * 100, [*range(1, 40)], [WIDTH - 1, WIDTH, WIDTH + 1] * 3, [6 * WIDTH - 1, 6 * WIDTH, 6 * WIDTH + 1] * 3
+    for lengths in early:
+        play(engine, [large] * (len(lengths) + 2), cut=[None, *lengths, None])
+    for lengths in ([None, 45] * 20, [None] * 40, [1, None] * 20, [*range(1, 49), None]):
+        play(engine, [small] * (len(lengths) + 2), cut=[None, *lengths, None])
 
 
 def test_a_cut_at_every_pixel(engine):
@@ -183,16 +195,19 @@ def test_a_full_last_row_without_suppression(engine):
 
 def test_the_last_pixel_is_enough(engine):
     """All of a frame comes out without anything after it, and as late as is promised."""
-    run, items = play(engine, [arcs(4, (HEIGHT, WIDTH))], [{"suppress": 0}])
-    assert run["o"].clock[-1] == run.accepted["i"][-1] + WIDTH + 23
-    for (_, x, y, *_), clock in zip(items[:-1], run["o"].clock, strict=False):
-        if y + 4 < HEIGHT and x + 4 < WIDTH:
-            assert clock == run.accepted["i"][(y + 4) * WIDTH + x + 4] + 21
-        elif y + 4 == HEIGHT:
-            assert clock == run.accepted["i"][-1] + 26 + x
+    for idle in (None, random_idle(WIDTH * HEIGHT, 0.3, seed=6)):
+        run, items = play(engine, [arcs(4, (HEIGHT, WIDTH))], [{"suppress": 0}], idle=idle)
+        pixel = run.accepted["i"]
+        pixel = np.append(pixel, pixel[-1] + 1 + np.arange(22))  # The steps that follow by themselves.
+        assert run["o"].clock[-1] == run.accepted["i"][-1] + WIDTH + 24
+        for (_, x, y, *_), clock in zip(items[:-1], run["o"].clock, strict=False):
+            if y + 4 < HEIGHT and x + 4 < WIDTH:
+                assert clock == pixel[(y + 4) * WIDTH + x + 4 + 22] + 3
+            elif y + 4 == HEIGHT:
+                assert clock == run.accepted["i"][-1] + 27 + x
     for shape in ((6, 9), (9, 6), (1, 1)):
         run, _ = play(engine, [np.zeros(shape, np.uint8)])
-        assert run["o"].clock.tolist() == [run.accepted["i"][-1] + 21]
+        assert run["o"].clock.tolist() == [run.accepted["i"][-1] + 25]
 
 
 @pytest.mark.parametrize("cut", [1, 200, 700, None])
@@ -239,6 +254,8 @@ def test_smallest_builds(size):
     (Suppression, {"width": 9, "height": 0}, ValueError, "height must be 1 to 4096 pixels, not 0"),
     (Window, {"width": 5000}, ValueError, "width must be 1 to 4096 pixels, not 5000"),
     (Corners, {"width": 6.5, "height": 9}, TypeError, "width must be an integer, not 6.5"),
+    (Delay, {"width": 0, "steps": 3}, ValueError, "A delay needs 1 bit and 2 steps or more, not 0 and 3"),
+    (Delay, {"width": 4, "steps": 1}, ValueError, "A delay needs 1 bit and 2 steps or more, not 4 and 1"),
     (Corners, {"width": True, "height": 9}, TypeError, "width must be an integer, not True"),
 ])  # fmt: skip
 def test_sizes_that_no_block_can_have(block, sizes, error, text):
