@@ -4,7 +4,7 @@ PYTHON = python3.11
 JOBS = 2
 PY = .venv/bin/python
 
-.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs quartus ip clean
+.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs quartus ip synth clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list
@@ -49,6 +49,9 @@ quartus: .venv/installed ## Write the Quartus project of the DE2-115 with a D5M 
 ip: .venv/installed ## Package the hardware for Platform Designer, FuseSoC and IP-XACT: build/out/ip
 	$(PY) -m firmware.toolchain sensor
 	$(PY) -m build.ip --program build/out/firmware/sensor.bin $(ARGS)
+
+synth: .venv/installed ## Estimate area and clock speed by open tools: build/out/synth.json
+	$(PY) -m build.synth $(ARGS)
 
 clean: ## Remove all products (.venv stays)
 	rm -rf build/out

@@ -1,8 +1,9 @@
-"""Estimate area and clock speed by open tools: ``python -m build.synth [--seed S] [--only cyclone4e|ecp5] [--out FILE]``.
+"""Estimate area and clock speed by open tools: ``python -m build.synth``.
 
-Writes build/out/synth.json and prints it as a table: for Cyclone IV E logic elements, registers, M9K blocks, memory bits
-and 9-bit multiplier elements of every block and in total, for ECP5 LUTs, block RAMs and clock speed of the sensor and of
-the whole system after place and route. Quartus has no part in it: all figures are estimates.
+``[--only cyclone4e|ecp5] [--seed S] [--out FILE]``. Writes build/out/synth.json and prints it as a table: for Cyclone
+IV E logic elements, registers, M9K blocks, memory bits and 9-bit multiplier elements of every block and in total, for
+ECP5 LUTs, block RAMs and clock speed of the sensor and of the whole system after place and route. Quartus has no part
+in it: all figures are estimates.
 """
 
 import argparse

@@ -11,7 +11,7 @@ KEPT = (r"rasterpose_system\.[^.]+", r"rasterpose_system\.sensor\.[^.]+")
 PAPER = {"le": 10_814, "ff": 6_683, "memory_bits": 1_703_417, "mult9": 11}
 
 #: LUTs that VexRiscv's own README gives for its "full" configuration (RV32IM, caches of 4 KB) on a Cyclone IV, by
-#: Quartus. ``VexRiscv.v`` of pythondata-cpu-vexriscv is near to it, but not the same: no other published pair is nearer.
+#: Quartus. ``VexRiscv.v`` of pythondata-cpu-vexriscv is near to it, but not the same; no published pair is nearer.
 VEXRISCV_LUTS = 2_407
 
 

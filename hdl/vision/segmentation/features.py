@@ -187,7 +187,9 @@ class Features(wiring.Component):
             ("", operation.start, operation.stop, 1),
             ("gap_", operation.gap_start, operation.start - 1, operation.gap),
         ):
-            first, last = (Signal(len(operation.start), name=f"{prefix}{n}", reset_less=True) for n in ("first", "last"))
+            first, last = (
+                Signal(len(operation.start), name=f"{prefix}{n}", reset_less=True) for n in ("first", "last")
+            )
             length = Signal(len(operation.start) + 1, name=f"{prefix}length")
             is_used = Signal(name=f"{prefix}used")
             m.d.sync += [first.eq(x0), last.eq(x1), is_used.eq(used), length.eq(Mux(is_used, last - first + 1, 0))]
