@@ -12,6 +12,7 @@ from hdl.pixels import BinaryPixel, ItemKind, unstalled
 from hdl.vision.matching.geometry import marker_layout
 from hdl.vision.matching.matching import Matching
 from hdl.vision.segmentation.segmentation import Segmentation
+from hdl.vision.size_filter import SizeFilter
 from sim.engine import StreamEngine, fields, random_idle
 from sim.models.matching import MARKER, find_markers, is_candidate
 from sim.models.segmentation import find_blobs
@@ -22,7 +23,7 @@ from tests.shapes import DISTRACTORS, SIDE, kite_grid, marker_bitmap, marker_fra
 ITEM, END, ABORT = (kind.value for kind in (ItemKind.ITEM, ItemKind.END, ItemKind.ABORT))
 LARGE, SMALL = (640, 480), (96, 72)
 #: Clocks in which the longest queue is worked off.
-DRAIN = 8000
+DRAIN = 11_000
 
 
 class Chain(wiring.Component):
@@ -44,11 +45,15 @@ class Chain(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.segmentation = segmentation = Segmentation(**self._sizes)
+        m.submodules.size_filter = size_filter = SizeFilter(**self._sizes)
         m.submodules.matching = matching = Matching(**self._sizes, depth=self._depth)
         connect(m, flipped(self.i), segmentation.i)
-        connect(m, segmentation.o, matching.i)
+        connect(m, segmentation.o, size_filter.i)
+        connect(m, size_filter.o, matching.kept)
         connect(m, matching.o, flipped(self.o))
         m.d.comb += [
+            matching.i.payload.eq(segmentation.o.payload),
+            matching.i.valid.eq(segmentation.o.valid),
             *(getattr(matching, name).eq(getattr(self, name)) for name in ("columns", "rows", "min_side")),
             self.dropped.eq(matching.dropped),
             self.overflow.eq(segmentation.overflow),
