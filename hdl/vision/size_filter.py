@@ -72,7 +72,7 @@ class SizeFilter(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        blob, box = self.i.payload, self.o.payload
+        blob, box = self.i.payload, Signal(self.o.payload.shape(), reset_less=True)
         given = Signal()
         m.d.sync += [
             given.eq(self.i.valid),
@@ -98,9 +98,12 @@ class SizeFilter(wiring.Component):
             held_beyond = Signal(name=f"{name}_beyond", reset_less=True)
             with m.If(starts):
                 m.d.sync += [held.eq(limit - less_one), held_beyond.eq(beyond)]
-            is_small += [value < held, held_beyond]
+            lack = Signal(signed(len(held) + 1), name=f"lack_of_{name}")
+            m.d.comb += lack.eq(value - held)
+            is_small += [lack[-1], held_beyond]
         m.d.comb += [
             self.small.eq(given & (box.kind == ItemKind.ITEM) & Cat(is_small).any()),
             self.o.valid.eq(given & ~self.small),
+            self.o.payload.eq(box),
         ]
         return m

@@ -76,9 +76,9 @@ class Candidates(wiring.Component):
             m.d.sync += [side.eq(limit - 1), side_beyond.eq(beyond)]
 
         # Clock 1.
-        item, has_hole = Signal(), Signal()
-        gap = Signal.like(blob.gap_area)
-        filled = Signal(len(blob.area) + 1)
+        item, has_hole = Signal(), Signal(reset_less=True)
+        gap = Signal.like(blob.gap_area, reset_less=True)
+        filled = Signal(len(blob.area) + 1, reset_less=True)
         m.d.sync += [
             item.eq(self.i.valid & (blob.kind == ItemKind.ITEM)),
             has_hole.eq(blob.euler <= 0),
@@ -90,7 +90,7 @@ class Candidates(wiring.Component):
         judged, tests = Signal(), []
 
         def test(name, condition):
-            result = Signal(name=name)
+            result = Signal(name=name, reset_less=True)
             m.d.sync += result.eq(condition)
             tests.append(result)
 
@@ -98,8 +98,10 @@ class Candidates(wiring.Component):
         test("inside_low", (box.x_min != 0) & (box.y_min != 0))
         test("inside_x", box.x_max != last["x"])
         test("inside_y", box.y_max != last["y"])
-        test("wide", box.x_span >= side)
-        test("high", box.y_span >= side)
+        for axis in "xy":
+            lack = Signal(signed(bits + 1), name=f"lack_{axis}")
+            m.d.comb += lack.eq(box[f"{axis}_span"] - side)
+            test(f"large_{axis}", ~lack[-1])
         test("gap_large", (gap << 4) >= filled)
         test("gap_small", (gap << 3) <= filled)
         m.d.sync += [judged.eq(item), self.mark.eq(ItemKind.ITEM)]

@@ -38,15 +38,22 @@ class Divider(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        rest = Signal(self._divisor_bits)
+        rest = Signal(self._divisor_bits, reset_less=True)
+        work = Signal.like(self.quotient, reset_less=True)
+        divisor = Signal.like(self.divisor, reset_less=True)
         trial, difference = Signal(self._divisor_bits + 1), Signal(self._divisor_bits + 2)
         fits = ~difference[-1]
-        m.d.comb += [trial.eq(Cat(self.quotient[-1], rest)), difference.eq(trial - self.divisor)]
+        m.d.comb += [
+            trial.eq(Cat(work[-1], rest)),
+            difference.eq(trial - divisor),
+            self.quotient.eq(work),
+            self.divisor.eq(divisor),
+        ]
         with m.If(self.load_divisor):
-            m.d.sync += self.divisor.eq(self.divisor_in)
+            m.d.sync += divisor.eq(self.divisor_in)
         # The dividend is shifted out at the top while the quotient comes in below.
         with m.If(self.load | self.step):
-            m.d.sync += self.quotient.eq(Mux(self.load, self.dividend, Cat(fits, self.quotient)))
+            m.d.sync += work.eq(Mux(self.load, self.dividend, Cat(fits, work)))
         with m.If(self.fresh | self.step):
             m.d.sync += rest.eq(Mux(self.fresh, 0, Mux(fits, difference, trial)))
         return m

@@ -28,9 +28,7 @@ def word_layout(width, height):
     upright."""
     extremes = blob_layout(width, height)["extremes"].shape
     shapes = [extremes[f"e{k}"].shape for k in range(POINTS)]
-    return data.StructLayout(
-        {name: max(shape[name].width for shape in shapes) for name in ("reach", "other")}
-    )
+    return data.StructLayout({name: max(shape[name].width for shape in shapes) for name in ("reach", "other")})
 
 
 class LaneReading(wiring.Signature):
@@ -147,13 +145,15 @@ class Lanes(wiring.Component):
             lane("gap_sum_y", Lane.GAP_SUM_Y, component.gap_sum_y),
         ]
 
-        groups = [Signal(word, name=f"group{k}") for k in range(POINTS // 4)]
+        groups = [Signal(word, name=f"group{k}", reset_less=True) for k in range(POINTS // 4)]
         for k, group in enumerate(groups):
             for name in word.members:
                 m.d.sync += group[name].eq(_or([extreme[name] for extreme in extremes[4 * k : 4 * k + 4]]))
+        joined = Signal(word, reset_less=True)
         for name in word.members:
-            m.d.sync += reader.word[name].eq(_or([group[name] for group in groups]))
+            m.d.sync += joined[name].eq(_or([group[name] for group in groups]))
         m.d.comb += [
+            reader.word.eq(joined),
             reader.area.eq(areas[0] | areas[1]),
             reader.gap_sum.eq(sums[0] | sums[1]),
             reader.box_max.x.eq(extremes[0].reach),

@@ -40,9 +40,9 @@ class Matcher(wiring.Component):
         lanes -> unfold -> plane: points -> products -> search -> which points
                    divider -'                   '-----> tally -> rejected, notes -> verdict
 
-    Time: 315 clocks at most for a candidate, 1 for a mark. Marks keep their place in the order.
+    Time: 310 clocks at most for a candidate, 1 for a mark. Marks keep their place in the order.
 
-    Memory: 306 rows of 47 bits, 32 points.
+    Memory: 304 rows of 51 bits, 32 points.
 
     Members
     -------
@@ -77,15 +77,16 @@ class Matcher(wiring.Component):
         words = data.StructLayout({name: unsigned(bits) for name, bits in FIELDS.items()})
         initial = [{"lane": Lane.NONE.value} | row for row in rows]
         m.submodules.program = text = memory.Memory(shape=words, depth=len(rows), init=initial)
-        fetched, row = text.read_port(), Signal(words, init=initial[0])
+        fetched, row = text.read_port(), Signal(words, init=initial[0], reset_less=True)
         counter = Signal(range(len(rows) + 1))
-        m.d.comb += fetched.addr.eq(counter)
+        place = Signal.like(self.place, reset_less=True)
+        m.d.comb += [fetched.addr.eq(counter), self.lanes.place.eq(place)]
         m.d.sync += row.eq(fetched.data)
 
         rejected = Signal()
         with m.FSM(name="matcher"):
             with m.State("IDLE"):
-                m.d.sync += self.lanes.place.eq(self.place)
+                m.d.sync += place.eq(self.place)
                 with m.If(self.valid):
                     with m.If(self.kind == ItemKind.ITEM):
                         m.d.sync += counter.eq(1)
@@ -111,15 +112,13 @@ class Matcher(wiring.Component):
         lanes = self.lanes
         sizes = self._sizes
         m.submodules.unfold = unfold = Unfold(**sizes)
-        m.submodules.divider = divider = Divider(
-            dividend_bits=len(lanes.gap_sum), divisor_bits=len(lanes.area)
-        )
+        m.submodules.divider = divider = Divider(dividend_bits=len(lanes.gap_sum), divisor_bits=len(lanes.area))
         m.submodules.plane = plane = Plane(**sizes, initial=INITIAL_POINTS)
         m.submodules.search = search = Search(shape=cross_shape(**sizes))
         m.submodules.tally = tally = Tally(
             product=cross_shape(**sizes), area=unsigned(len(lanes.area)), total=tally_shape(**sizes)
         )
-        notes, flip, turn = Signal(6), Signal(), Signal(2)
+        notes, flip, turn = Signal(6, reset_less=True), Signal(reset_less=True), Signal(2)
         found = Mux(row.from_high, search.high, search.low)
         vertex = Signal(2)
         m.d.comb += [
@@ -131,9 +130,7 @@ class Matcher(wiring.Component):
             *(getattr(divider, n).eq(row[n]) for n in ("load", "fresh", "load_divisor", "step")),
             divider.dividend.eq(lanes.gap_sum),
             divider.divisor_in.eq(lanes.area),
-            plane.number.eq(
-                Mux(row.from_low | row.from_high, found ^ row.number, Cat(vertex, row.number[2:]))
-            ),
+            plane.number.eq(Mux(row.from_low | row.from_high, found ^ row.number, Cat(vertex, row.number[2:]))),
             # One of the two is zero.
             *(plane.given[axis].eq(unfold.point[axis] | divider.quotient) for axis in "xy"),
             *(getattr(plane, n).eq(row[n]) for n in ("outside", "put", "put_x", "put_y", "line", "pair", "keep")),

@@ -24,10 +24,10 @@ class Matching(wiring.Component):
            '-> candidates -> wanted, rejected, mark -> waiting -> matcher -> markers
         kept ----^ a clock later: box, mark
 
-    Throughput: a component a clock; a candidate in 315 clocks, so 14 markers that end in one row of 640 pixels are
-    all reported within 8 rows. Only how many candidates can wait is limited, see :class:`Waiting`.
+    Throughput: a component a clock; a candidate in 310 clocks, so 14 markers that end in one row of 640 pixels are
+    all reported within 7 rows. Only how many candidates can wait is limited, see :class:`Waiting`.
 
-    Memory at 640 x 480: 16 kbit of components, 14 kbit of program, 1 kbit of queue, points and places.
+    Memory at 640 x 480: 16 kbit of components, 15 kbit of program, 2 kbit of queue, places and points.
 
     Parameters
     ----------

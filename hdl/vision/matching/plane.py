@@ -73,7 +73,7 @@ class Plane(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         shape = corner_shape(**self._sizes)
-        point = Signal(shape)
+        point = Signal(shape, reset_less=True)
         for index, axis in enumerate("xy"):
             initial = [corner[index] for corner in self._initial]
             m.submodules[axis] = points = memory.Memory(shape=shape[axis].shape, depth=len(initial), init=initial)
@@ -88,9 +88,11 @@ class Plane(wiring.Component):
 
         x, y = shape["x"].shape, signed(shape["y"].width + 1)
         wide = x if x.width > y.width else y
-        u_x, u_y, v_y, v_x = Signal(x), Signal(y), Signal(wide), Signal(wide)
+        u_x, u_y, v_y, v_x = (Signal(s, reset_less=True) for s in (x, y, wide, wide))
         difference_x, difference_y = Signal(x), Signal(y)
-        products = [Signal(self.product.shape(), name=f"product_{axis}") for axis in "xy"]
+        products = [Signal(self.product.shape(), name=f"product_{axis}", reset_less=True) for axis in "xy"]
+        product = Signal.like(self.product, reset_less=True)
+        older = [Signal(pixel_layout(**self._sizes), name=f"older{k}", reset_less=True) for k in range(2)]
         m.d.comb += [difference_x.eq(point.x - v_x), difference_y.eq(v_y - point.y)]
         with m.If(self.line):
             m.d.sync += [u_x.eq(difference_x), u_y.eq(difference_y)]
@@ -102,13 +104,14 @@ class Plane(wiring.Component):
         m.d.sync += [
             products[0].eq(u_x * v_y),
             products[1].eq(u_y * v_x),
-            self.product.eq(products[0] + products[1]),
-            self.last[2].x.eq(self.last[1].x),
-            self.last[2].y.eq(self.last[1].y),
-            self.last[3].x.eq(self.last[2].x),
-            self.last[3].y.eq(self.last[2].y),
+            product.eq(products[0] + products[1]),
+            older[0].eq(self.last[1]),
+            older[1].eq(older[0]),
         ]
         m.d.comb += [
+            self.product.eq(product),
+            self.last[2].eq(older[0]),
+            self.last[3].eq(older[1]),
             self.last[0].x.eq(point.x),
             self.last[0].y.eq(point.y),
             self.last[1].x.eq(v_x),

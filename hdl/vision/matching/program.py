@@ -75,7 +75,19 @@ class _Rows:
         self.set(self.now + 1, outside=1)
         return self._passes(**passes)
 
-    def add(self, sign, number=None, *, anew=False, double=False, less=False, absolute=False, flip=False, best=None, **passes):
+    def add(
+        self,
+        sign,
+        number=None,
+        *,
+        anew=False,
+        double=False,
+        less=False,
+        absolute=False,
+        flip=False,
+        best=None,
+        **passes,
+    ):
         """Add a point's product to the tally, or what the divisor is. Returns the row after the sum."""
         row = self.now
         if number is None:

@@ -1,6 +1,6 @@
 """Values in, the places of the lowest and the highest out."""
 
-from amaranth import Module, Mux, Signal
+from amaranth import Module, Mux, Signal, signed
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -34,13 +34,17 @@ class Search(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        lowest, highest = Signal.like(self.value), Signal.like(self.value)
-        number, following = Signal.like(self.low), Signal.like(self.low)
-        m.d.comb += number.eq(Mux(self.first, 0, following))
+        lowest, highest = (Signal.like(self.value, name=n, reset_less=True) for n in ("lowest", "highest"))
+        number, following = Signal.like(self.low), Signal.like(self.low, reset_less=True)
+        low, high = (Signal.like(self.low, name=n, reset_less=True) for n in ("low_number", "high_number"))
+        m.d.comb += [number.eq(Mux(self.first, 0, following)), self.low.eq(low), self.high.eq(high)]
+        # The sign of a difference is one carry chain; a signed comparison may become two.
+        below, above = (Signal(signed(len(self.value) + 1), name=n) for n in ("below", "above"))
+        m.d.comb += [below.eq(self.value - lowest), above.eq(highest - self.value)]
         with m.If(self.valid):
             m.d.sync += following.eq(number + 1)
-            with m.If(self.first | (self.value < lowest)):
-                m.d.sync += [lowest.eq(self.value), self.low.eq(number)]
-            with m.If(self.first | (self.value > highest)):
-                m.d.sync += [highest.eq(self.value), self.high.eq(number)]
+            with m.If(self.first | below[-1]):
+                m.d.sync += [lowest.eq(self.value), low.eq(number)]
+            with m.If(self.first | above[-1]):
+                m.d.sync += [highest.eq(self.value), high.eq(number)]
         return m

@@ -1,6 +1,6 @@
 """Sums of products in the making, and their signs."""
 
-from amaranth import Module, Mux, Signal
+from amaranth import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -48,8 +48,9 @@ class Tally(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        total, value, operand, base = (Signal(self._total, name=n) for n in ("total", "value", "operand", "base"))
-        inverted, carry = Signal(), Signal()
+        total, operand = (Signal(self._total, name=n, reset_less=True) for n in ("total", "operand"))
+        value, base = (Signal(self._total, name=n) for n in ("value", "base"))
+        inverted, carry = Signal(), Signal(reset_less=True)
         m.d.comb += [
             inverted.eq(self.subtract ^ self.flip ^ (self.absolute & self.product[-1])),
             value.eq(Mux(self.use_area, self.area, self.product)),
@@ -61,5 +62,6 @@ class Tally(wiring.Component):
             carry.eq(inverted ^ self.less),
         ]
         with m.If(self.valid):
-            m.d.sync += total.eq(base + operand + carry)
+            # One adder: the carry comes in from a bit below.
+            m.d.sync += total.eq((Cat(carry, base) + Cat(carry, operand))[1:])
         return m

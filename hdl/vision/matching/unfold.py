@@ -48,8 +48,8 @@ class Unfold(wiring.Component):
         support = Support((2, 2), **self._sizes)
         ys = Signal(support.y_bits)
         part = Signal(support.y_bits + 1)
-        rest = Signal.like(self.word.reach)
-        y = Signal(support.y_bits)
+        rest = Signal.like(self.word.reach, reset_less=True)
+        y = Signal(support.y_bits, reset_less=True)
         m.d.comb += [
             ys.eq(self.word.other ^ self.north.replicate(support.y_bits)),
             part.eq(Mux(self.weighs, Mux(self.twice_y, ys << 1, ys), 0)),
