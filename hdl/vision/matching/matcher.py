@@ -19,7 +19,7 @@ __all__ = ["Matcher", "program_of"]
 
 
 def program_of(width, height):
-    """The matcher's program for frames of up to this size; a candidate takes as many clocks as it has rows, and 4."""
+    """The matcher's program for frames of up to this size; a candidate takes as many clocks as it has rows, and 2."""
     return program(max(sum_bits(width, height)[1:]))
 
 
@@ -42,7 +42,7 @@ class Matcher(wiring.Component):
 
     Time: 310 clocks at most for a candidate, 1 for a mark. Marks keep their place in the order.
 
-    Memory: 304 rows of 51 bits, 32 points.
+    Memory: 306 rows of 51 bits, 32 points.
 
     Members
     -------

@@ -12,7 +12,7 @@ from hdl.vision.matching.geometry import POINTS
 from hdl.vision.matching.lanes import Lane
 from hdl.vision.matching.unfold import unfolding
 
-__all__ = ["FIELDS", "INITIAL_POINTS", "program"]
+__all__ = ["FIELDS", "INITIAL_POINTS", "IN_FLIGHT", "program"]
 
 #: Points that are kept, after the extremes.
 A, B, C, D, B0, D0, HH, HL, ZERO, ONE, OTHER = range(POINTS, POINTS + 11)
@@ -20,6 +20,9 @@ A, B, C, D, B0, D0, HH, HL, ZERO, ONE, OTHER = range(POINTS, POINTS + 11)
 #: What they are at first. Zero and the last two never change: the larger of |x| and |y|, six times, is the sum of the
 #: absolute products with (3, 3) and (-3, 3).
 INITIAL_POINTS = [(0, 0)] * (ONE - 0) + [(3, 3), (-3, 3)] + [(0, 0)] * (32 - OTHER - 1)
+
+#: Rows that are still carried out after the one that ends the program.
+IN_FLIGHT = 2
 
 #: Field -> bits; 0 where nothing is said, and :data:`Lane.NONE` of ``lane``.
 FIELDS = {
@@ -131,7 +134,7 @@ def program(dividend_bits):
     hole = _hole_y(rows, dividend_bits, after)
     _filling(rows, hole)
     _offsets(rows)
-    last = max(rows.rows)
+    last = max(rows.rows) + IN_FLIGHT
     return [rows.rows.get(row, {}) for row in range(last + 1)]
 
 
