@@ -84,7 +84,7 @@ def beats(blobs, size, kinds=None):
     put(layout["kind"], np.zeros(len(blobs), object) if kinds is None else np.array(kinds, object))
     for k, name in enumerate(("x_min", "y_min", "x_max", "y_max")):
         put(layout[name], blobs["box"][:, k].astype(object))
-    for name in ("area", "sum_x", "sum_y", "gap_area", "gap_sum_x", "gap_sum_y", "euler"):
+    for name in ("area", "gap_area", "gap_sum_x", "gap_sum_y", "euler"):
         put(layout[name], blobs[name].astype(object))
     extremes = layout["extremes"]
     for k, direction in enumerate(DIRECTIONS):
