@@ -94,8 +94,10 @@ class Sensor(wiring.Component):
         connect(m, corners.o, publisher.i_corner)
         connect(m, matching.o, publisher.i_marker)
         m.d.comb += [
-            matching.i.payload.eq(publisher.o_blob.payload),
-            matching.i.valid.eq(publisher.o_blob.valid),
+            matching.i.payload.eq(segmentation.o.payload),
+            matching.i.valid.eq(segmentation.o.valid),
+            matching.kept.payload.eq(publisher.o_blob.payload),
+            matching.kept.valid.eq(publisher.o_blob.valid),
         ]
         self._connect_settings(m, registers, framer, threshold, size_filter, corners, matching, publisher)
         self._connect_events(m, registers, framer, segmentation, matching, publisher)

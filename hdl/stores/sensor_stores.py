@@ -5,7 +5,7 @@ from amaranth.lib import data
 from hdl.config import SensorConfig
 from hdl.stores.frame_store import FrameStore
 from hdl.stores.publisher import Publisher
-from hdl.vision.blob import blob_layout
+from hdl.vision.blob import box_layout
 from hdl.vision.corners import corner_item
 from hdl.vision.matching.geometry import marker_layout
 
@@ -18,7 +18,7 @@ def _store(layout, fields, depth):
 
 def blob_store(*, width, height, depth=SensorConfig.blob_depth):
     """Boxes and areas of a frame's components."""
-    return _store(blob_layout(width, height), ("x_min", "y_min", "x_max", "y_max", "area"), depth)
+    return _store(box_layout(width, height), ("x_min", "y_min", "x_max", "y_max", "area"), depth)
 
 
 def corner_store(*, width, height, depth=SensorConfig.corner_depth):
@@ -35,5 +35,5 @@ def marker_store(*, width, height, depth=SensorConfig.marker_depth):
 def publisher(*, width, height):
     """The publisher of the sensor's three streams."""
     return Publisher(
-        blob=blob_layout(width, height), corner=corner_item(width, height), marker=marker_layout(width, height)
+        blob=box_layout(width, height), corner=corner_item(width, height), marker=marker_layout(width, height)
     )

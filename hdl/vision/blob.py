@@ -7,7 +7,7 @@ from amaranth.utils import bits_for
 from hdl.config import DIRECTIONS
 from hdl.pixels import ItemKind
 
-__all__ = ["Support", "blob_layout", "sum_bits"]
+__all__ = ["Support", "blob_layout", "box_layout", "sum_bits"]
 
 
 class Support:
@@ -90,3 +90,11 @@ def blob_layout(width, height):
             ),
         }
     )
+
+
+def box_layout(width, height):
+    """What the stores keep of a component of :func:`blob_layout`, and the size of its box less 1, which is worked out
+    beside it."""
+    blob = blob_layout(width, height)
+    fields = {name: blob[name].shape for name in ("kind", "x_min", "y_min", "x_max", "y_max", "area")}
+    return data.StructLayout(fields | {"x_span": fields["x_max"], "y_span": fields["y_max"]})

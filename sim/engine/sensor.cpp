@@ -14,7 +14,7 @@
 
 namespace {
 
-constexpr int64_t HELD_PATIENCE = 1'000'000;  // clocks; a full queue of candidates takes 6,000
+constexpr int64_t HELD_PATIENCE = 1'000'000;  // clocks; a full queue of candidates takes 11,000
 
 struct Sensor {
     VerilatedContext context;
@@ -92,8 +92,15 @@ struct Sensor {
         if (number != before && (read(FRAME) & 0xFFFF) == before) {
             read_markers(MARKER_WINDOW, before, seen >> 16, read(MARKERS) & 0xFFFF);
         }
-        read_markers(LIVE_WINDOW, number, number == before ? seen >> 16 : 0, live >> 16);
+        const uint32_t from = number == before ? seen >> 16 : 0, count = live >> 16;
+        const size_t kept = markers.size();
+        read_markers(LIVE_WINDOW, number, from, count);
         seen = live;
+        // The frame ended while they were read: they may be another's, and are published now.
+        if (from < count && (read(LIVE) & 0xFFFF) != number) {
+            markers.resize(kept);
+            seen = from << 16 | number;
+        }
     }
 };
 

@@ -27,7 +27,7 @@ __all__ = ["RtlSensor"]
 
 _DRIVER = pathlib.Path(__file__).with_name("sensor.cpp")
 _TOP = pathlib.Path(__file__).with_name("sensor_top.v")
-#: Clocks after the last pixel in which every frame must be published: a full queue of candidates takes 6,000.
+#: Clocks after the last pixel in which every frame must be published: a full queue of candidates takes 11,000.
 _PATIENCE = 100_000
 
 

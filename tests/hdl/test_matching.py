@@ -12,17 +12,19 @@ from hdl.pixels import BinaryPixel, ItemKind, unstalled
 from hdl.vision.matching.geometry import marker_layout
 from hdl.vision.matching.matching import Matching
 from hdl.vision.segmentation.segmentation import Segmentation
+from hdl.vision.size_filter import SizeFilter
 from sim.engine import StreamEngine, fields, random_idle
 from sim.models.matching import MARKER, find_markers, is_candidate
 from sim.models.segmentation import find_blobs
 from tests.hdl.harness import assert_same, binary_beats, cocotb_run
+from tests.hdl.matching_bench import beats, component_engine, markers_of, match_all, random_blobs
 from tests.hdl.test_segmentation import decode, run_frames, segmentation
 from tests.shapes import DISTRACTORS, SIDE, kite_grid, marker_bitmap, marker_frame, marker_grid
 
 ITEM, END, ABORT = (kind.value for kind in (ItemKind.ITEM, ItemKind.END, ItemKind.ABORT))
 LARGE, SMALL = (640, 480), (96, 72)
 #: Clocks in which the longest queue is worked off.
-DRAIN = 8000
+DRAIN = 11_000
 
 
 class Chain(wiring.Component):
@@ -44,11 +46,15 @@ class Chain(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.segmentation = segmentation = Segmentation(**self._sizes)
+        m.submodules.size_filter = size_filter = SizeFilter(**self._sizes)
         m.submodules.matching = matching = Matching(**self._sizes, depth=self._depth)
         connect(m, flipped(self.i), segmentation.i)
-        connect(m, segmentation.o, matching.i)
+        connect(m, segmentation.o, size_filter.i)
+        connect(m, size_filter.o, matching.kept)
         connect(m, matching.o, flipped(self.o))
         m.d.comb += [
+            matching.i.payload.eq(segmentation.o.payload),
+            matching.i.valid.eq(segmentation.o.valid),
             *(getattr(matching, name).eq(getattr(self, name)) for name in ("columns", "rows", "min_side")),
             self.dropped.eq(matching.dropped),
             self.overflow.eq(segmentation.overflow),
@@ -199,6 +205,35 @@ def test_reset_in_the_middle(seed):
     cuts = [min(at, frames[0].size), max(at - frames[0].size, 0), None, None]
     run = play(SMALL, frames, cuts=cuts, reset_at=[at])
     assert check(frames_of(run, SMALL, since=run.resets[0]), frames[2:], note=f"seed {seed}") > 4
+
+
+@pytest.mark.parametrize("size, count, found", [(LARGE, 2000, 500), (SMALL, 4000, 400), ((1920, 1080), 1000, 250)])
+def test_components_near_the_limits(size, count, found):
+    """Thousands of made-up components, with what a marker has and what it just has not."""
+    random = np.random.default_rng([7, size[0]])
+    run, got, expected = match_all(random_blobs(random, count, size), size, pause=320)
+    assert not len(run["dropped"]) and not len(run["overflow"])
+    assert np.array_equal(got, expected) and found < len(expected) < count / 2
+
+
+def test_burst_of_candidates():
+    """32 wait, whatever comes between them; the next ones are lost, and the queue goes on."""
+    random = np.random.default_rng(8)
+    blobs = random_blobs(random, 4000, LARGE)
+    blobs = blobs[is_candidate(blobs, *LARGE, 4)][:64]
+    crowd = np.concatenate([blobs, blobs[:20]])
+    payloads, parts = beats(crowd, LARGE)
+    idle = np.zeros(len(payloads), np.int64)
+    idle[64 * parts] = 16_000  # until all of the first ones are worked off
+    engine = component_engine(LARGE)
+    engine.reset()
+    config = {"columns": LARGE[0], "rows": LARGE[1], "min_side": 4}
+    run = engine.run({"i": (payloads, idle)}, config, drain_clocks=DRAIN)
+    first = 64 - len(run["dropped"])
+    assert 32 < first < 36 and len(run["dropped"]) == 64 - first
+    lost = np.isin(np.arange(64), (run["dropped"].clock + 1) // parts - 1)
+    kept = np.concatenate([blobs[~lost], blobs[:20]])
+    assert np.array_equal(markers_of(run, LARGE)[1], find_markers(kept, *LARGE, 4))
 
 
 def test_candidates_overflow():

@@ -1,135 +1,112 @@
-"""Components in, those worth matching out, at the matcher's own pace."""
+"""Components in, and of each whether it may be a marker."""
 
-from amaranth import Module, Mux, Signal
-from amaranth.lib import data, stream, wiring
-from amaranth.lib.fifo import SyncFIFOBuffered
+from amaranth import Cat, Module, Signal, signed
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hdl.pixels import ItemKind, unstalled
-from hdl.vision.blob import blob_layout
+from hdl.vision.blob import blob_layout, box_layout
+from hdl.vision.size_filter import least
 
-__all__ = ["Candidates", "candidate_layout"]
-
-_FIELDS = ("kind", "area", "gap_area", "gap_sum_x", "gap_sum_y", "extremes")
-
-
-def candidate_layout(width, height):
-    """What matching needs of a component: the fields of the same name of ``blob_layout``."""
-    blob = blob_layout(width, height)
-    return data.StructLayout({name: blob[name].shape for name in _FIELDS})
+__all__ = ["Candidates"]
 
 
 class Candidates(wiring.Component):
-    """Passes on components that may be markers and queues them.
+    """Tells the components that may be markers from all others.
 
     A candidate's box is large enough and does not touch the frame's border (a marker has a quiet zone), it has a hole,
     and its gaps are 1/16 to 1/8 of what it fills (a marker's inner square: 0.09). The settings hold from the first
     beat of a frame to its END, SKIP or ABORT.
 
-    Half of the queue is for marks alone: a candidate that finds the other half full is lost (``dropped``), a mark
-    always has room. An ABORT that would void nothing is not queued, so only complete frames add marks while no
-    candidate does; while 32 candidates are matched, 5,152 clocks, at most 21 frames of 16 x 16 can end.
+    ::
 
-    Memory: ``depth`` words of the candidate's size.
+        clock      0                   1                 2
+        i      component -> filled, gap, has hole -> comparisons -> wanted
+        kept                box, spans             ->             -> rejected, mark
 
-    Parameters
-    ----------
-    width, height : int
-        Largest frame, pixels.
-    depth : int
-        Words of the queue; half as many candidates can wait.
+    Throughput: a beat a clock. Latency: 2 clocks from ``i``.
 
     Members
     -------
     i : In(unstalled(blob_layout(width, height)))
+        Every component.
+    kept : In(unstalled(box_layout(width, height)))
+        The same beats a clock later: those that passed the size filter, and marks as the publisher decided.
     columns, rows : In(16)
         Size of the frame to which the components belong.
     min_side : In(16)
         Smallest width and height of a candidate's box.
-    o : Out(stream.Signature(candidate_layout(width, height)))
-    dropped : Out(1)
-        Strobe: a candidate was lost.
-    overflow : Out(1)
-        Strobe: a mark was lost. Cannot happen with a depth of 64 or more and frames from 16 x 16 up.
+    wanted, rejected : Out(1)
+        Strobes: a component is a candidate, or is none.
+    mark : Out(ItemKind)
+        What else there is in this clock: an END, SKIP or ABORT, or ITEM for nothing.
     """
 
-    def __init__(self, *, width, height, depth):
-        if depth < 4:
-            raise ValueError(f"depth must be 4 or more, not {depth!r}")
-        self._sizes = {"width": width, "height": height}
-        self._depth = depth
+    def __init__(self, *, width, height):
         super().__init__(
             {
                 "i": In(unstalled(blob_layout(width, height))),
+                "kept": In(unstalled(box_layout(width, height))),
                 "columns": In(16),
                 "rows": In(16),
                 "min_side": In(16),
-                "o": Out(stream.Signature(candidate_layout(width, height))),
-                "dropped": Out(1),
-                "overflow": Out(1),
+                "wanted": Out(1),
+                "rejected": Out(1),
+                "mark": Out(ItemKind),
             }
         )
 
     def elaborate(self, platform):
         m = Module()
-        blob = self.i.p
-        layout = candidate_layout(**self._sizes)
+        blob, box = self.i.p, self.kept.p
 
-        # A frame's settings: as they are until its first beat, and kept from then on.
+        # A frame's settings: followed until the clock after its first beat has come, which is when they count.
         fresh = Signal(init=1)
-        settings = {}
-        for name in ("columns", "rows", "min_side"):
-            port = getattr(self, name)
-            kept = Signal.like(port, name=f"{name}_kept")
-            settings[name] = Mux(fresh, port, kept)
-            with m.If(fresh):
-                m.d.sync += kept.eq(port)
         with m.If(self.i.valid):
             m.d.sync += fresh.eq(blob.kind != ItemKind.ITEM)
+        last = {}
+        for axis, name in (("x", "columns"), ("y", "rows")):
+            last[axis] = Signal.like(box[f"{axis}_max"], name=f"last_{axis}", reset_less=True)
+            with m.If(fresh):
+                m.d.sync += last[axis].eq(getattr(self, name) - 1)
+        bits = max(len(box.x_span), len(box.y_span)) + 1
+        limit, beyond = least(self.min_side, bits)
+        side, side_beyond = Signal(signed(bits + 1), reset_less=True), Signal(reset_less=True)
+        with m.If(fresh):
+            m.d.sync += [side.eq(limit - 1), side_beyond.eq(beyond)]
 
-        beat, beat_valid = Signal(layout), Signal()
-        filled = Signal(blob.area.shape().width + 1)
-        box_inside, box_large, has_hole = Signal(), Signal(), Signal()
-        m.d.sync += beat_valid.eq(self.i.valid)
-        with m.If(self.i.valid):
-            m.d.sync += [
-                *(beat[name].eq(blob[name]) for name in _FIELDS),
-                filled.eq(blob.area + blob.gap_area),
-                has_hole.eq(blob.euler <= 0),
-                box_inside.eq(
-                    (blob.x_min != 0)
-                    & (blob.y_min != 0)
-                    & (blob.x_max + 1 != settings["columns"])
-                    & (blob.y_max + 1 != settings["rows"])
-                ),
-                box_large.eq(
-                    (blob.x_max - blob.x_min + 1 >= settings["min_side"])
-                    & (blob.y_max - blob.y_min + 1 >= settings["min_side"])
-                ),
-            ]
-
-        m.submodules.queue = queue = SyncFIFOBuffered(width=layout.size, depth=self._depth)
-        wanted, room, voids = Signal(), Signal(), Signal()
-        is_item = beat.kind == ItemKind.ITEM
-        is_mark = ~is_item & ((beat.kind != ItemKind.ABORT) | voids)
-        m.d.comb += [
-            wanted.eq(
-                is_item
-                & box_inside
-                & box_large
-                & has_hole
-                & ((beat.gap_area << 4) >= filled)
-                & ((beat.gap_area << 3) <= filled)
-            ),
-            room.eq(queue.level < self._depth // 2),
-            queue.w_data.eq(beat),
-            queue.w_en.eq(beat_valid & (wanted & room | is_mark)),
-            self.dropped.eq(beat_valid & wanted & ~room),
-            self.overflow.eq(beat_valid & is_mark & ~queue.w_rdy),
-            self.o.p.eq(queue.r_data),
-            self.o.valid.eq(queue.r_rdy),
-            queue.r_en.eq(self.o.ready),
+        # Clock 1.
+        item, has_hole = Signal(), Signal(reset_less=True)
+        gap = Signal.like(blob.gap_area, reset_less=True)
+        filled = Signal(len(blob.area) + 1, reset_less=True)
+        m.d.sync += [
+            item.eq(self.i.valid & (blob.kind == ItemKind.ITEM)),
+            has_hole.eq(blob.euler <= 0),
+            gap.eq(blob.gap_area),
+            filled.eq(blob.area + blob.gap_area),
         ]
-        with m.If(beat_valid & (is_mark | wanted & room)):
-            m.d.sync += voids.eq(is_item)  # an ABORT that comes now has candidates to void
+
+        # Clock 2.
+        judged, tests = Signal(), []
+
+        def test(name, condition):
+            result = Signal(name=name, reset_less=True)
+            m.d.sync += result.eq(condition)
+            tests.append(result)
+
+        test("kept", self.kept.valid & has_hole & ~side_beyond)
+        test("inside_low", (box.x_min != 0) & (box.y_min != 0))
+        test("inside_x", box.x_max != last["x"])
+        test("inside_y", box.y_max != last["y"])
+        for axis in "xy":
+            lack = Signal(signed(bits + 1), name=f"lack_{axis}")
+            m.d.comb += lack.eq(box[f"{axis}_span"] - side)
+            test(f"large_{axis}", ~lack[-1])
+        test("gap_large", (gap << 4) >= filled)
+        test("gap_small", (gap << 3) <= filled)
+        m.d.sync += [judged.eq(item), self.mark.eq(ItemKind.ITEM)]
+        with m.If(self.kept.valid):
+            m.d.sync += self.mark.eq(box.kind)
+        all_pass = Cat(tests).all()
+        m.d.comb += [self.wanted.eq(judged & all_pass), self.rejected.eq(judged & ~all_pass)]
         return m
