@@ -1,4 +1,4 @@
-"""The open synthesis tools, as PyPI has them: Yosys, nextpnr for ECP5 and the packer of Project Trellis, as WebAssembly.
+"""The open synthesis tools as PyPI has them: Yosys, nextpnr for ECP5 and its packer, compiled to WebAssembly.
 
 They see nothing outside the folder that they run in, so everything they read and write is named relative to it. Their
 first run on a machine takes a minute longer: it compiles them.

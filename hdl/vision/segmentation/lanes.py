@@ -1,4 +1,4 @@
-"""One feature of all slots: the accumulator that runs and merged slots are added to. The slots are in Features' memory."""
+"""One feature of all slots: the accumulator that runs and merged slots are added to. Features has the slots."""
 
 from amaranth import Module, Mux, Signal
 from amaranth.lib import data, wiring
