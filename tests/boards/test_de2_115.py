@@ -15,6 +15,7 @@ from sim.results import Settings
 from sim.scene import random_marker_scene, render
 from tests.boards.board_bench import simulate_board
 from tests.boards.tb_de2_115 import Op
+from tests.hdl import harness
 from tests.shapes import marker_frame
 from tests.system.firmware_bench import found, frame_lines
 from tests.system.serial_line import levels, received
@@ -115,8 +116,9 @@ def test_from_camera_to_serial_line():
     assert after[3] == table and again[3] == 2 * table
 
 
-def test_short(simulator):
-    """One picture, as small as can be, so that Icarus does not take minutes."""
+@pytest.mark.skipif(bool(harness.missing("icarus")), reason=str(harness.missing("icarus")))
+def test_short_on_icarus():
+    """One picture, small and after the set-up: Icarus makes some five hundred clocks a second."""
     picture = marker_frame(48, 64, [(20, 9, 30, 20)])
     camera = Camera(80.0, 80.0, 31.5, 23.5)
     program = [
@@ -126,7 +128,7 @@ def test_short(simulator):
         (Op.PLAY, 0),
         (Op.LINES, 3, PATIENCE),
     ]
-    captured = play(simulator, program, [picture], camera, display_ticks=0)
+    captured = play("icarus", program, [picture], camera, display_ticks=0)
     check_camera(captured)
     check_frame(lines(captured), 0, picture, camera)
 
