@@ -18,6 +18,12 @@ from sim.pattern import RASTERPOSE
 
 __all__ = ["AprilTag", "Aruco", "Detected", "RasterPose"]
 
+_REFINEMENTS = {
+    None: cv2.aruco.CORNER_REFINE_NONE,
+    "subpix": cv2.aruco.CORNER_REFINE_SUBPIX,
+    "contour": cv2.aruco.CORNER_REFINE_CONTOUR,
+}
+
 
 class Detected(NamedTuple):
     """What was reported: ``markers``, list of vertices (4, 2), and the number of markers with a wrong number."""
@@ -47,16 +53,11 @@ class Aruco:
     """
 
     pattern = ARUCO
-    REFINEMENTS = {
-        None: cv2.aruco.CORNER_REFINE_NONE,
-        "subpix": cv2.aruco.CORNER_REFINE_SUBPIX,
-        "contour": cv2.aruco.CORNER_REFINE_CONTOUR,
-    }
 
     def __init__(self, refinement=None):
         cv2.setNumThreads(1)
         parameters = cv2.aruco.DetectorParameters()
-        parameters.cornerRefinementMethod = self.REFINEMENTS[refinement]
+        parameters.cornerRefinementMethod = _REFINEMENTS[refinement]
         self._detector = cv2.aruco.ArucoDetector(ARUCO_WORDS, parameters)
 
     def detect(self, image, _settings):

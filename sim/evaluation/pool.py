@@ -45,7 +45,7 @@ def _cluster(address):
         for worker, digest in digests.items():
             if digest != code_digest():
                 raise ClusterError(
-                    f"the Dask worker {worker} does not have these sources ({digest}): start it in a copy of this checkout"
+                    f"the Dask worker {worker} does not have these sources ({digest}): start it in this checkout"
                 )
         with joblib.parallel_config(backend="dask", client=client):
             yield

@@ -26,7 +26,7 @@ class Sweep:
     parameter: str | None
     values: tuple
     quick: tuple = ()
-    base: Condition = Condition()
+    base: Condition
 
     def condition(self, value):
         """Condition at one of the values."""
