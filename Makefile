@@ -4,7 +4,7 @@ PYTHON = python3.11
 JOBS = 2
 PY = .venv/bin/python
 
-.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs clean
+.PHONY: help demo run frame-given test verilog firmware lint bench report exhaustive docs clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list
@@ -36,6 +36,9 @@ lint: .venv/installed ## Check the sources with ruff, and their Verilog with Ver
 
 bench: .venv/installed ## Measure accuracy, false alarms, speed and latency
 	$(PY) -m sim bench $(ARGS)
+
+report: .venv/installed ## Compare with rivals and redo the paper's experiments: build/out/report; QUICK=1 in two minutes
+	$(PY) -m sim report $(if $(QUICK),--quick) $(ARGS)
 
 exhaustive: .venv/installed ## Run the tests that try every case, which takes long
 	$(PY) -m pytest -n $(JOBS) tests/exhaustive $(ARGS)

@@ -45,12 +45,14 @@ def measure_variant(name, markers):
     return {"title": ALL[name].title, "markers": markers, **numbers}
 
 
-def measure_one_function(library, name):
-    """Clocks of a call and errors of a function, over 1,000 inputs; None if the library does not have it."""
+def measure_one_function(library, name, inputs):
+    """Clocks of a call and errors of a function, over so many inputs; None if the library does not have it."""
     from sim.measure.functions import measure_function
 
-    measured = measure_function(_system(), library, name)
-    return measured and {key: value for key, value in measured._asdict().items() if key != "results"}
+    measured = measure_function(_system(), library, name, inputs)
+    if measured is None:
+        return None
+    return {"inputs": inputs, **{key: value for key, value in measured._asdict().items() if key != "results"}}
 
 
 def pose_jobs(markers):
@@ -58,10 +60,10 @@ def pose_jobs(markers):
     return [Job("sim.evaluation.clocks:measure_variant", {"name": name, "markers": markers}) for name in VARIANTS]
 
 
-def function_jobs():
-    """Jobs of all FUNCTIONS of all LIBRARIES."""
+def function_jobs(inputs):
+    """Jobs of all FUNCTIONS of all LIBRARIES, over so many inputs each."""
     return [
-        Job("sim.evaluation.clocks:measure_one_function", {"library": library, "name": name})
+        Job("sim.evaluation.clocks:measure_one_function", {"library": library, "name": name, "inputs": inputs})
         for name in FUNCTIONS
         for library in LIBRARIES
     ]

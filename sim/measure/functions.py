@@ -73,7 +73,7 @@ def function_inputs(name):
     return inputs(base if base in APPROXIMATIONS else "sqrt")
 
 
-def measure_function(system, library, name):
+def measure_function(system, library, name, count=1000):
     """FunctionClocks of ``name``, or None if the library does not have it.
 
     Parameters
@@ -83,6 +83,8 @@ def measure_function(system, library, name):
         A key of :data:`LIBRARIES`.
     name : str
         A key of :data:`FUNCTIONS`.
+    count : int
+        How many of the inputs are taken, 1 to 1,000.
 
     Raises
     ------
@@ -93,7 +95,7 @@ def measure_function(system, library, name):
     names = _names(image)
     if name not in names:
         return None
-    drawn = function_inputs(name)
+    drawn = function_inputs(name)[:count]
     clocks, results = [], []
     for start in range(0, len(drawn), _MOST):
         batch = drawn[start : start + _MOST]

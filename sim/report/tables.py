@@ -1,0 +1,105 @@
+"""Rows of the page's own tables."""
+
+__all__ = ["comparison_rows", "losses", "photograph_rows", "sweep_rows"]
+
+_SENSOR_HZ = 50e6
+
+_JUDGED = {
+    "found_rate": ("found", False),
+    "vertex_rms_px": ("rms of the vertices", True),
+    "translation_median_pct": ("error of the place", True),
+    "rotation_median_deg": ("error of the rotation", True),
+    "flip_rate": ("wrong poses", True),
+}
+"""Figure -> what a sentence calls it, and whether less is better."""
+
+
+def _number(value, digits, unit=""):
+    return "–" if value is None else f"{value:,.{digits}f}{unit}"
+
+
+def _percent(value, digits=1):
+    return _number(None if value is None else 100 * value, digits, " %")
+
+
+def _time(system):
+    if system["frame_clocks"]:
+        return f"{1e3 * system['frame_clocks'] / _SENSOR_HZ:.2f} ms ¹"
+    return f"{system['detect_ms'] + system['pose_ms']:.2f} ms"
+
+
+def comparison_rows(results, sweep):
+    """A row a system for a sweep of one condition, each cell with whether it is the best of its column."""
+    entries = results["sweeps"][sweep]["systems"]
+    columns = (
+        ("found_rate", _percent, max),
+        ("false_markers", lambda value: f"{value}", min),
+        ("vertex_rms_px", lambda value: _number(value, 3), min),
+        ("vertex_p95_px", lambda value: _number(value, 3), min),
+        ("translation_median_pct", lambda value: _number(value, 3), min),
+        ("rotation_median_deg", lambda value: _number(value, 3), min),
+        ("rotation_p95_deg", lambda value: _number(value, 2), min),
+        ("flip_rate", _percent, min),
+    )
+    rows = []
+    for name, system in results["systems"].items():
+        cells = []
+        for figure, shown, best in columns:
+            (value,) = entries[name][figure]
+            known = [entry[figure][0] for entry in entries.values() if entry[figure][0] is not None]
+            cells.append((shown(value), value is not None and value == best(known)))
+        rows.append({"name": system["title"], "ours": system["frame_clocks"] is not None, "cells": cells})
+        cells.append((_time(system), False))
+    return rows
+
+
+def photograph_rows(photographs):
+    """Detector and the markers that it reported."""
+    return [[name, str(count)] for name, count in photographs["false_markers"].items()]
+
+
+def losses(results, sweep):
+    """Sentences on where a rival does better than RasterPose in a condition, and where none does."""
+    entries, titles = results["sweeps"][sweep]["systems"], results["systems"]
+    lost, won = [], []
+    for figure, (title, less) in _JUDGED.items():
+        (ours,) = entries["rasterpose"][figure]
+        rivals = {
+            name: entry[figure][0]
+            for name, entry in entries.items()
+            if titles[name]["frame_clocks"] is None and entry[figure][0] is not None
+        }
+        if ours is None or not rivals:
+            continue
+        best = (min if less else max)(rivals, key=rivals.get)
+        if (rivals[best] < ours) if less else (rivals[best] > ours):
+            lost.append(f"{title}: {ours:.3g} against {rivals[best]:.3g} of {titles[best]['title']}")
+        else:
+            won.append(f"{title}: {ours:.3g}, the best rival {rivals[best]:.3g}")
+    return lost, won
+
+
+def sweep_rows(results, name):
+    """A sweep's conditions in words: what is fixed, how many frames, what the Verilog confirmed."""
+    sweep = results["sweeps"][name]
+    words = {
+        "distance_mm": "distance {} mm",
+        "tilt_deg": "tilt {} degrees",
+        "roll_deg": "roll {} degrees",
+        "off_axis_deg": "{} degrees off the axis",
+        "noise": "noise {}",
+        "blur_px": "blur {} px",
+        "contrast": "contrast {}",
+        "gradient": "gradient {}",
+        "motion_px": "motion {} px",
+        "threshold": "threshold {}",
+    }
+    swept = {"distance": "distance_mm", "tilt": "tilt_deg", "off_axis": "off_axis_deg", "roll": "roll_deg"}
+    swept |= {"blur": "blur_px", "motion": "motion_px"}
+    parts = []
+    for field, text in words.items():
+        value = sweep["base"][field]
+        if field == swept.get(sweep["parameter"], sweep["parameter"]) or value in (None, 0):
+            continue
+        parts.append(text.format(f"{value[0]:.0f} to {value[1]:.0f}" if isinstance(value, list) else f"{value:g}"))
+    return ", ".join(parts)
