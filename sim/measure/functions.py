@@ -99,11 +99,13 @@ def measure_function(system, library, name, count=1000):
     clocks, results = [], []
     for start in range(0, len(drawn), _MOST):
         batch = drawn[start : start + _MOST]
-        job = np.array([names.index(name), len(batch)], "<u4").tobytes() + batch.astype("<f4").tobytes()
+        padded = np.zeros(_MOST, "<f4")
+        padded[: len(batch)] = batch
+        job = np.array([names.index(name), len(batch)], "<u4").tobytes() + padded.tobytes()
         loaded = execute(system, image, job)
         empty = read_number(system, loaded, "empty_clocks")
-        clocks.append(read_array(system, loaded, "clocks", np.uint32).astype(np.int64) - empty)
-        results.append(read_array(system, loaded, "results", np.float32))
+        clocks.append(read_array(system, loaded, "clocks", np.uint32)[: len(batch)].astype(np.int64) - empty)
+        results.append(read_array(system, loaded, "results", np.float32)[: len(batch)])
     clocks, results = np.concatenate(clocks), np.concatenate(results)
     judge = FUNCTIONS[name]
     true = np.array([judge.true(float(x)) for x in drawn])

@@ -4,7 +4,6 @@ import pathlib
 
 import jinja2
 
-from sim.evaluation.conditions import PARAMETERS
 from sim.evaluation.trace import PRINTED
 from sim.measure.poses import PAPER_S
 from sim.report import label_plots, paper, paper_plots, sweep_plots, tables
@@ -13,7 +12,6 @@ from sim.report.style import save_png, svg
 __all__ = ["write_page"]
 
 _FOLDER = pathlib.Path(__file__).parent
-_CENTRED_MM = 904.0
 
 
 def _sweep_sections(results):
@@ -21,7 +19,7 @@ def _sweep_sections(results):
     for name, sweep in results["sweeps"].items():
         if sweep["parameter"] is not None:
             plot = svg(sweep_plots.draw_sweep(sweep, results["systems"]))
-            sections.append({"name": name, "sweep": sweep, "base": tables.sweep_rows(results, name), "plot": plot})
+            sections.append({"name": name, "sweep": sweep, "base": tables.base_text(sweep), "plot": plot})
     return sections
 
 
@@ -91,13 +89,12 @@ def write_page(results, folder):
         results=results,
         main=svg(main),
         comparison={name: tables.comparison_rows(results, name) for name in ("nominal", "hard")},
-        photographs=tables.photograph_rows(results["photographs"]),
+        photographs=tables.photograph_rows(results),
         lost=lost,
         won=won,
         sections=_sweep_sections(results),
         paper=_paper_section(results),
         labels=_label_section(results),
-        parameters=PARAMETERS,
         rtl_frames=sum(sweep["rtl"]["frames"] for sweep in results["sweeps"].values()),
     )
     path = folder / "index.html"

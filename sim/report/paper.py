@@ -44,7 +44,7 @@ TABLE_5 = {
 
 
 def _number(value, digits=2):
-    return "–" if value is None else f"{value:,.{digits}f}"
+    return "-" if value is None else f"{value:,.{digits}f}"
 
 
 def axis_rows(axes):
@@ -92,6 +92,6 @@ def resource_rows(resources):
     if not total:
         return None
     return [
-        [title, "–" if paper is None else f"{paper:,}", _number(total.get(key), 0)]
+        [title, "-" if paper is None else f"{paper:,}", _number(total.get(key), 0)]
         for key, (title, paper) in TABLE_5.items()
     ]

@@ -38,6 +38,7 @@ pyplot.rcParams.update(
         "axes.spines.top": False,
         "axes.spines.right": False,
         "axes.grid": True,
+        "axes.axisbelow": True,
         "grid.color": "#e8ebf0",
         "lines.markersize": 4,
         "xtick.color": "#5a6372",

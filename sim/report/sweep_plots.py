@@ -7,8 +7,8 @@ __all__ = ["draw_sweep", "main_figure"]
 PANELS = {
     "found_rate": ("Found", "part", False),
     "vertex_rms_px": ("Vertices, rms", "px", True),
-    "translation_median_pct": ("Place, median error", "% of range", True),
-    "rotation_median_deg": ("Rotation, median error", "degrees", True),
+    "translation_median_pct": ("Error of the place", "% of range", True),
+    "rotation_median_deg": ("Error of the rotation", "degrees", True),
     "flip_rate": ("Wrong poses", "part", False),
 }
 """Figure -> title, unit, whether its axis is logarithmic."""
@@ -28,17 +28,17 @@ _FLOOR = {"vertex_rms_px": 0.01, "translation_median_pct": 0.002, "rotation_medi
 """What is less is drawn here, so that an exact zero can be seen."""
 
 
-def _panel(axes, sweep, systems, figure, title):
-    name, unit, logarithmic = PANELS[figure]
+def _panel(axes, sweep, systems, figure):
+    title, unit, logarithmic = PANELS[figure]
     for system, entry in systems.items():
         values = sweep["systems"][system][figure]
         points = [(x, y) for x, y in zip(sweep["values"], values, strict=True) if y is not None]
         shown = [max(y, _FLOOR[figure]) if logarithmic else y for _, y in points]
         style = LINES.get(system, {"color": "#868e96"})
         axes.plot([x for x, _ in points], shown, label=entry["title"], **style)
-    axes.set_title(title or name)
+    axes.set_title(title)
     axes.set_ylabel(unit)
-    axes.set_xlabel(f"{sweep['title'].split(' (')[0]}, {sweep['unit']}", fontsize=8)
+    axes.set_xlabel(sweep["unit"], fontsize=8)
     if logarithmic:
         axes.set_yscale("log")
     else:
@@ -49,7 +49,7 @@ def draw_sweep(sweep, systems):
     """Figure of one sweep; ``sweep`` and ``systems`` are entries of results.json."""
     figure, panels = axes_row(len(PANELS))
     for axes, name in zip(panels, PANELS, strict=True):
-        _panel(axes, sweep, systems, name, None)
+        _panel(axes, sweep, systems, name)
     legend_below(figure, panels[0])
     return figure
 
@@ -59,6 +59,7 @@ def main_figure(results):
     figure, panels = axes_row(4, rows=2, height=2.5)
     for axes, (name, what) in zip(panels, MAIN, strict=True):
         sweep = results["sweeps"][name]
-        _panel(axes, sweep, results["systems"], what, f"{PANELS[what][0]} over {name}")
+        _panel(axes, sweep, results["systems"], what)
+        axes.set_xlabel(f"{sweep['title'].split(',')[0].split(' (')[0].lower()}, {sweep['unit']}", fontsize=8)
     legend_below(figure, panels[0])
     return figure

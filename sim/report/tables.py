@@ -1,6 +1,8 @@
-"""Rows of the page's own tables."""
+"""Rows of the page's own tables, and its sentences about numbers."""
 
-__all__ = ["comparison_rows", "losses", "photograph_rows", "sweep_rows"]
+from sim.evaluation.conditions import PARAMETERS
+
+__all__ = ["base_text", "comparison_rows", "losses", "photograph_rows"]
 
 _SENSOR_HZ = 50e6
 
@@ -14,8 +16,23 @@ _JUDGED = {
 """Figure -> what a sentence calls it, and whether less is better."""
 
 
+_WORDS = {
+    "distance_mm": "distance {} mm",
+    "tilt_deg": "tilt {} degrees",
+    "roll_deg": "roll {} degrees",
+    "off_axis_deg": "{} degrees off the axis",
+    "noise": "noise {}",
+    "blur_px": "blur {} px",
+    "contrast": "contrast {}",
+    "gradient": "gradient {}",
+    "motion_px": "motion {} px",
+    "threshold": "threshold {}",
+}
+"""Field of a Condition -> how a sentence says it."""
+
+
 def _number(value, digits, unit=""):
-    return "–" if value is None else f"{value:,.{digits}f}{unit}"
+    return "-" if value is None else f"{value:,.{digits}f}{unit}"
 
 
 def _percent(value, digits=1):
@@ -53,9 +70,12 @@ def comparison_rows(results, sweep):
     return rows
 
 
-def photograph_rows(photographs):
-    """Detector and the markers that it reported."""
-    return [[name, str(count)] for name, count in photographs["false_markers"].items()]
+def photograph_rows(results):
+    """Detector, called as the first system that has it, and the markers that it reported."""
+    titles = {}
+    for system in results["systems"].values():
+        titles.setdefault(system["detector"], system["title"])
+    return [[titles[name], str(count)] for name, count in results["photographs"]["false_markers"].items()]
 
 
 def losses(results, sweep):
@@ -79,27 +99,13 @@ def losses(results, sweep):
     return lost, won
 
 
-def sweep_rows(results, name):
-    """A sweep's conditions in words: what is fixed, how many frames, what the Verilog confirmed."""
-    sweep = results["sweeps"][name]
-    words = {
-        "distance_mm": "distance {} mm",
-        "tilt_deg": "tilt {} degrees",
-        "roll_deg": "roll {} degrees",
-        "off_axis_deg": "{} degrees off the axis",
-        "noise": "noise {}",
-        "blur_px": "blur {} px",
-        "contrast": "contrast {}",
-        "gradient": "gradient {}",
-        "motion_px": "motion {} px",
-        "threshold": "threshold {}",
-    }
-    swept = {"distance": "distance_mm", "tilt": "tilt_deg", "off_axis": "off_axis_deg", "roll": "roll_deg"}
-    swept |= {"blur": "blur_px", "motion": "motion_px"}
+def base_text(sweep):
+    """What a sweep keeps fixed, in words."""
+    swept = PARAMETERS[sweep["parameter"]].field
     parts = []
-    for field, text in words.items():
+    for field, text in _WORDS.items():
         value = sweep["base"][field]
-        if field == swept.get(sweep["parameter"], sweep["parameter"]) or value in (None, 0):
-            continue
-        parts.append(text.format(f"{value[0]:.0f} to {value[1]:.0f}" if isinstance(value, list) else f"{value:g}"))
+        if field != swept and value not in (None, 0):
+            shown = f"{value[0]:.0f} to {value[1]:.0f}" if isinstance(value, list) else f"{value:g}"
+            parts.append(text.format(shown))
     return ", ".join(parts)
