@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
+import pupil_apriltags
 
 from sim.evaluation.patterns import APRILTAG, ARUCO, ARUCO_ID, ARUCO_WORDS, TAG_ID
 from sim.models.sensor import ModelSensor
@@ -69,15 +70,21 @@ class Aruco:
         return Detected(ours, len(found) - len(ours))
 
 
+class _LastingDetector(pupil_apriltags.Detector):
+    """A detector that its process keeps: the library's own end frees the tags' family before the detector that still
+    reads it, which can bring the process down."""
+
+    def __del__(self):
+        pass
+
+
 class AprilTag:
     """AprilTag 3 through pupil-apriltags, at full resolution (its default halves it, which costs accuracy)."""
 
     pattern = APRILTAG
 
     def __init__(self):
-        from pupil_apriltags import Detector  # loads its own library
-
-        self._detector = Detector(families="tag36h11", nthreads=1, quad_decimate=1.0)
+        self._detector = _LastingDetector(families="tag36h11", nthreads=1, quad_decimate=1.0)
 
     def detect(self, image, _settings):
         """Detected in a picture; the sensor's settings are not for it.

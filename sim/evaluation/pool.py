@@ -9,6 +9,10 @@ from sim.evaluation.jobs import code_digest, run_job
 __all__ = ["ClusterError", "run_jobs"]
 
 
+_PATIENCE_S = 10
+"""Seconds in which a scheduler must answer."""
+
+
 class ClusterError(RuntimeError):
     """The cluster cannot be used; the message says why."""
 
@@ -35,7 +39,7 @@ def _cluster(address):
     from distributed import Client
 
     try:
-        client = Client(address, timeout=10, set_as_default=False)
+        client = Client(address, timeout=_PATIENCE_S, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise ClusterError(f"no Dask scheduler answers at {address}: {error}") from None
     with client:

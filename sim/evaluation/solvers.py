@@ -49,24 +49,25 @@ def classic():
 
 
 class Ippe:
-    """OpenCV's IPPE for squares, in double precision; the better of its two poses.
+    """OpenCV's IPPE, in double precision; the better of its two poses.
 
-    It answers NaN for some exactly frontal markers: then the vertices are moved by a billionth of a pixel.
+    Its form for squares wants y up, so that its rotations are near half turns, and of those it gets some wrong: markers
+    without roll. So the form for planes is taken, with y down. It answers NaN for some markers that are symmetrical in
+    the picture: then the vertices are moved by a millionth of a pixel.
     """
 
-    _NUDGE_PX = np.array([[1e-9, 0], [0, 1e-9], [-1e-9, 0], [0, 0]])
+    _NUDGE_PX = np.array([[1e-6, 0], [0, 1e-6], [-1e-6, 0], [0, 0]])
 
     def __init__(self, lens=Lens()):  # noqa: B008 - frozen
         self._camera = np.array([[lens.fx, 0, lens.cx], [0, lens.fy, lens.cy], [0, 0, 1]])
         half = SIDE_MM / 2
-        # IPPE_SQUARE wants y up and z towards the viewer.
-        self._points = np.array([[-half, half, 0], [half, half, 0], [half, -half, 0], [-half, -half, 0]])
+        self._points = np.array([[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]])
 
     def __call__(self, vertices):
         for image in (np.asarray(vertices, float), vertices + self._NUDGE_PX):
             found, turns, places, _ = cv2.solvePnPGeneric(
-                self._points, image, self._camera, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+                self._points, image, self._camera, None, flags=cv2.SOLVEPNP_IPPE
             )
             if found and np.isfinite(turns[0]).all() and np.isfinite(places[0]).all():
-                return cv2.Rodrigues(turns[0])[0] @ np.diag([1.0, -1.0, -1.0]), places[0].ravel()
+                return cv2.Rodrigues(turns[0])[0], places[0].ravel()
         return None
