@@ -48,6 +48,7 @@ class Size:
     frames: int
     mixture_frames: int
     rtl_frames: int
+    timed_frames: int
     photographs: int
     markers: int
     inputs: int
@@ -62,6 +63,7 @@ FULL = Size(
     frames=40,
     mixture_frames=300,
     rtl_frames=8,
+    timed_frames=40,
     photographs=28,
     markers=60,
     inputs=1000,
@@ -75,6 +77,7 @@ QUICK = Size(
     frames=5,
     mixture_frames=20,
     rtl_frames=1,
+    timed_frames=8,
     photographs=8,
     markers=5,
     inputs=100,
@@ -219,7 +222,7 @@ def gather(size, store, *, workers=-1, dask=None, progress=lambda items, descrip
         "machine": timing.machine(),
         "versions": {package: importlib.metadata.version(package) for package in _VERSIONS},
         "figures": FIGURES,
-        "systems": _systems(timing.measure_times(8 if size.quick else 40)),
+        "systems": _systems(timing.measure_times(size.timed_frames)),
         "sweeps": sweeps,
         "photographs": photographs.photograph_summary(models["photographs"]),
         "paper": {

@@ -9,8 +9,9 @@ import matplotlib
 
 matplotlib.use("Agg")  # Draws without a display.
 from matplotlib import pyplot
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-__all__ = ["ACCENT", "FAINT", "INK", "LINES", "axes_row", "legend_below", "picture", "save_png", "svg"]
+__all__ = ["ACCENT", "FAINT", "INK", "LINES", "axes_row", "legend_below", "logarithmic", "picture", "save_png", "svg"]
 
 INK, FAINT, ACCENT = "#1c2330", "#8a93a3", "#d6336c"
 
@@ -51,16 +52,29 @@ pyplot.rcParams.update(
 )
 
 
-def axes_row(columns, rows=1, width=11.2, height=2.5):
-    """A figure and its axes as a flat list."""
-    figure, axes = pyplot.subplots(rows, columns, figsize=(width, height * rows), squeeze=False, layout="constrained")
+def axes_row(columns, rows=1, width=11.2, height=2.5, margins=None):
+    """A figure and its axes as a flat list; ``margins`` are of ``subplots_adjust``, None lets them be worked out."""
+    layout = None if margins else "constrained"
+    figure, axes = pyplot.subplots(rows, columns, figsize=(width, height * rows), squeeze=False, layout=layout)
+    if margins:
+        figure.subplots_adjust(**margins)
     return figure, list(axes.flat)
+
+
+def logarithmic(axes, low, high):
+    """Make the y axis logarithmic from ``low`` to ``high``, with plain numbers, more of them on a short axis."""
+    steps = (1, 2, 5) if high < 40 * low else (1, 3) if high < 400 * low else (1,)
+    axes.set_yscale("log")
+    axes.set_ylim(low, high)
+    axes.yaxis.set_major_locator(LogLocator(subs=steps))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_locator(NullLocator())
 
 
 def legend_below(figure, axes, columns=7):
     """One legend for all axes of a figure, under them."""
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=8.5)
+    figure.legend(handles, labels, loc="lower center", ncols=columns, fontsize=8.5)
 
 
 def svg(figure):
