@@ -1,12 +1,13 @@
 """Poses of exact vertices, the frontal ones that IPPE has no answer for, and matrices that are nearly rotations."""
 
+import cv2
 import numpy as np
 import pytest
 
 from sim.evaluation.conditions import Condition, scene_of
 from sim.evaluation.solvers import proper
 from sim.evaluation.systems import SOLVERS, solver
-from sim.marker import Lens, marker_pose, rotation
+from sim.marker import Lens, MarkerPose, marker_pose, rotation
 from sim.pattern import RASTERPOSE
 from sim.rotations import rotation_between
 
@@ -38,6 +39,21 @@ def test_exactly_frontal_markers_have_a_pose(name):
             turn, t_mm = solver(name)(marker.vertices(lens))
             assert rotation_between(turn, marker.R) < (0.1 if name != "classic" or centre[0] == 319.5 else 90)
             assert np.linalg.norm(t_mm - marker.t_mm) < 0.02 * np.linalg.norm(marker.t_mm)
+
+
+def test_where_opencv_answers_nan_there_is_a_pose():
+    """Markers turned about an upright axis only, on the optical axis: some in a hundred of them."""
+    lens, answers = Lens(), []
+    for angle in np.linspace(-60, 60, 301):
+        marker = MarkerPose(rotation([0, 1, 0], angle), [0, 0, 600])
+        vertices = marker.vertices(lens)
+        turn, _ = solver("ippe")(vertices)
+        assert rotation_between(turn, marker.R) < 0.01
+        raw = cv2.solvePnPGeneric(
+            solver("ippe")._points, vertices, solver("ippe")._camera, None, flags=cv2.SOLVEPNP_IPPE
+        )
+        answers.append(np.isfinite(raw[1][0]).all())
+    assert not all(answers)
 
 
 @pytest.mark.parametrize("name", ["centred", "classic"])

@@ -56,6 +56,12 @@ def test_chain_is_not_followed():
     assert told(".....# ...#.# .##.#. #.....") != true(".....# ...#.# .##.#. #.....")
 
 
+def test_the_multiplexer_before_p4_counts():
+    """The pixel behind a merger is given the new label; looked up instead, the box would end a column earlier."""
+    text = ".#...##. .#.#..#. #..###.. ###..###"
+    assert told(text) == true(text) == [(0, 0, 7, 3)]
+
+
 def test_as_printed_a_register_keeps_another_components_column():
     """Two columns side by side: the right one's least x is in the register when the left one's next row comes."""
     sides = "#.# #.# #.#"
