@@ -89,6 +89,7 @@ def write_page(results, folder):
         results=results,
         main=svg(main),
         comparison={name: tables.comparison_rows(results, name) for name in ("nominal", "hard")},
+        reach=tables.reach_rows(results),
         photographs=tables.photograph_rows(results),
         lost=lost,
         won=won,

@@ -24,8 +24,8 @@ MAIN = (
     ("blur", "rotation_median_deg"),
 )
 
-_MARGINS_ROW = {"left": 0.045, "right": 0.995, "top": 0.89, "bottom": 0.29, "wspace": 0.4}
-_MARGINS_MAIN = {"left": 0.052, "right": 0.995, "top": 0.95, "bottom": 0.165, "wspace": 0.27, "hspace": 0.5}
+_MARGINS_ROW = {"left": 0.045, "right": 0.985, "top": 0.89, "bottom": 0.29, "wspace": 0.4}
+_MARGINS_MAIN = {"left": 0.052, "right": 0.985, "top": 0.95, "bottom": 0.165, "wspace": 0.27, "hspace": 0.5}
 
 _FLOOR = {"vertex_rms_px": 0.01, "translation_median_pct": 0.002, "rotation_median_deg": 0.01}
 """What is less is drawn here, so that an exact zero can be seen."""

@@ -2,19 +2,24 @@
 
 from sim.evaluation.conditions import PARAMETERS
 
-__all__ = ["base_text", "comparison_rows", "losses", "photograph_rows"]
+__all__ = ["base_text", "comparison_rows", "losses", "photograph_rows", "reach_rows"]
 
 _SENSOR_HZ = 50e6
 
 _JUDGED = {
-    "found_rate": ("found", False),
-    "vertex_rms_px": ("rms of the vertices", True),
-    "translation_median_pct": ("error of the place", True),
-    "rotation_median_deg": ("error of the rotation", True),
-    "flip_rate": ("wrong poses", True),
+    "found_rate": ("found", False, "{:.1%}"),
+    "vertex_rms_px": ("rms of the vertices", True, "{:.3g} px"),
+    "translation_median_pct": ("error of the place", True, "{:.3g} % of the range"),
+    "rotation_median_deg": ("error of the rotation", True, "{:.3g} degrees"),
+    "flip_rate": ("wrong poses", True, "{:.1%}"),
 }
-"""Figure -> what a sentence calls it, and whether less is better."""
+"""Figure -> what a sentence calls it, whether less is better, and how it is shown."""
 
+REACH = 0.9
+"""Part of the markers that must be found for a value to count as reached."""
+
+REACHED = ("distance", "tilt", "noise", "blur", "contrast", "gradient", "motion")
+"""Sweeps from what is easy to what is hard; of the contrast the other way round."""
 
 _WORDS = {
     "distance_mm": "distance {} mm",
@@ -70,11 +75,17 @@ def comparison_rows(results, sweep):
     return rows
 
 
-def photograph_rows(results):
-    """Detector, called as the first system that has it, and the markers that it reported."""
+def detector_titles(results):
+    """Detector -> the title of the first system that has it."""
     titles = {}
     for system in results["systems"].values():
         titles.setdefault(system["detector"], system["title"])
+    return titles
+
+
+def photograph_rows(results):
+    """Detector and the markers that it reported."""
+    titles = detector_titles(results)
     return [[titles[name], str(count)] for name, count in results["photographs"]["false_markers"].items()]
 
 
@@ -82,7 +93,7 @@ def losses(results, sweep):
     """Sentences on where a rival does better than RasterPose in a condition, and where none does."""
     entries, titles = results["sweeps"][sweep]["systems"], results["systems"]
     lost, won = [], []
-    for figure, (title, less) in _JUDGED.items():
+    for figure, (title, less, shown) in _JUDGED.items():
         (ours,) = entries["rasterpose"][figure]
         rivals = {
             name: entry[figure][0]
@@ -93,10 +104,43 @@ def losses(results, sweep):
             continue
         best = (min if less else max)(rivals, key=rivals.get)
         if (rivals[best] < ours) if less else (rivals[best] > ours):
-            lost.append(f"{title}: {ours:.3g} against {rivals[best]:.3g} of {titles[best]['title']}")
+            lost.append(
+                f"{title}: {shown.format(ours)} against {shown.format(rivals[best])} of {titles[best]['title']}"
+            )
         else:
-            won.append(f"{title}: {ours:.3g}, the best rival {rivals[best]:.3g}")
+            won.append(f"{title}: {shown.format(ours)}, the best rival {shown.format(rivals[best])}")
     return lost, won
+
+
+def _reached(sweep, system, is_downwards):
+    """Last value of a sweep, from the easy end, up to which enough markers are found; None if not even the first."""
+    pairs = list(zip(sweep["values"], sweep["systems"][system]["found_rate"], strict=True))
+    last = None
+    for value, rate in reversed(pairs) if is_downwards else pairs:
+        if rate < REACH:
+            break
+        last = value
+    return last
+
+
+def reach_rows(results):
+    """Head and rows of how far each detector goes in each of REACHED, each cell with whether it is the furthest."""
+    names = [name for name in REACHED if name in results["sweeps"]]
+    titles = detector_titles(results)
+    systems = {}
+    for name, system in results["systems"].items():
+        systems.setdefault(system["detector"], name)
+    columns = []
+    for name in names:
+        is_downwards = name == "contrast"
+        values = [_reached(results["sweeps"][name], system, is_downwards) for system in systems.values()]
+        known = [value for value in values if value is not None]
+        best = (min if is_downwards else max)(known, default=None)
+        columns.append(
+            [("-" if value is None else f"{value:g}", value is not None and value == best) for value in values]
+        )
+    head = [f"{results['sweeps'][name]['title'].split(',')[0]}, {results['sweeps'][name]['unit']}" for name in names]
+    return head, [(titles[name], cells) for name, cells in zip(systems, zip(*columns, strict=True), strict=True)]
 
 
 def base_text(sweep):

@@ -128,11 +128,28 @@ def test_losses_are_told(results):
     for name in ("aruco", "aruco_subpix", "aruco_contour"):
         entries[name] |= {"found_rate": [0.5], "vertex_rms_px": [None]}
     lost, won = tables.losses(changed, "nominal")
-    assert "found: 0.9 against 0.95 of AprilTag 3" in lost
-    assert "rms of the vertices: 0.01, the best rival 0.06" in won
+    assert "found: 90.0% against 95.0% of AprilTag 3" in lost
+    assert "rms of the vertices: 0.01 px, the best rival 0.06 px" in won
     rows = tables.comparison_rows(changed, "nominal")
     assert [row["cells"][2] for row in rows if row["name"] == "AprilTag 3"] == [("0.060", False)]
     assert [row["cells"][2] for row in rows if row["name"] == "ArUco"] == [("-", False)]
+
+
+def test_reach_ends_where_too_few_are_found(results):
+    changed = json.loads(json.dumps(results))
+    for name, values in (("blur", [0, 2, 4, 6]), ("contrast", [10, 20, 40])):
+        changed["sweeps"][name] = {"title": name, "unit": "px", "values": values, "systems": {}}
+    rates = {"rasterpose": [1, 0.9, 0.89, 1], "aruco": [1, 1, 1, 0.5], "apriltag": [0.5, 1, 1, 1]}
+    for system in SYSTEMS:
+        rate = rates.get(system, [0, 0, 0, 0])
+        changed["sweeps"]["blur"]["systems"][system] = {"found_rate": rate}
+        changed["sweeps"]["contrast"]["systems"][system] = {"found_rate": rate[:3]}
+    head, rows = tables.reach_rows(changed)
+    blur, contrast = (next(k for k, name in enumerate(head) if name.startswith(key)) for key in ("blur", "contrast"))
+    found = {name: (cells[blur], cells[contrast]) for name, cells in rows}
+    assert found["RasterPose"] == (("2", False), ("-", False))
+    assert found["ArUco"] == (("4", True), ("10", True))
+    assert found["AprilTag 3"] == (("-", False), ("20", False))
 
 
 def test_a_difference_ends_the_report():
