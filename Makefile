@@ -4,11 +4,11 @@ PYTHON = python3.11
 JOBS = 2
 PY = .venv/bin/python
 
-.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs quartus ip synth clean
+.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs quartus ip synth report clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "make %-11s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9]+:.*## /{printf "make %-11s %s\n", $$1, $$2}' Makefile
 	@echo 'Any of them takes more arguments as ARGS="...", and the first sets up .venv (PYTHON=$(PYTHON)).'
 
 demo: .venv/installed ## Render a scene, let the hardware find its markers, and show what it says
@@ -36,6 +36,9 @@ lint: .venv/installed ## Check the sources with ruff, and their Verilog with Ver
 
 bench: .venv/installed ## Measure accuracy, false alarms, speed and latency
 	$(PY) -m sim bench $(ARGS)
+
+report: .venv/installed ## Compare with rivals and redo the paper's experiments: build/out/report; QUICK=1 in two minutes
+	$(PY) -m sim report $(if $(QUICK),--quick) $(ARGS)
 
 exhaustive: .venv/installed ## Run the tests that try every case, which takes long
 	$(PY) -m pytest -n $(JOBS) tests/exhaustive $(ARGS)

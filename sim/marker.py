@@ -78,11 +78,11 @@ class MarkerPose:
             raise ValueError(f"Side must be positive, not {self.side_mm!r} mm")
         if not self.R[:, 2] @ self.t_mm > 0:
             raise UnseenMarkerError("Marker must show its face to the camera")
-        self._corners_mm(0.0, 1.0)
+        self._corners_mm(0.0, 0.0, 1.0, 1.0)
 
-    def _corners_mm(self, low, high):
-        """Corners (4, 3) in the camera frame, clockwise, of the square with these limits in sides from V1."""
-        plane = np.array([[low, low, 0.5], [high, low, 0.5], [high, high, 0.5], [low, high, 0.5]]) - 0.5
+    def _corners_mm(self, x0, y0, x1, y1):
+        """Corners (4, 3) in the camera frame, clockwise, of the rectangle with these limits in sides from V1."""
+        plane = np.array([[x0, y0, 0.5], [x1, y0, 0.5], [x1, y1, 0.5], [x0, y1, 0.5]]) - 0.5
         corners = self.side_mm * plane @ self.R.T + self.t_mm
         if not np.all(corners[:, 2] > 0):
             raise UnseenMarkerError("Marker and quiet zone must be wholly before the camera")
@@ -91,9 +91,13 @@ class MarkerPose:
     def outline(self, lens, low=0.0, high=1.0):
         """Pixels (4, 2), clockwise, of the square with these limits in x and in y, in sides from V1.
 
-        (0, 1) is the marker itself, ``INNER`` its inner square, (-q, 1 + q) its quiet zone of q sides.
+        (0, 1) is the marker itself, (-q, 1 + q) its quiet zone of q sides.
         """
-        return lens.project(self._corners_mm(low, high))
+        return self.rectangle(lens, low, low, high, high)
+
+    def rectangle(self, lens, x0, y0, x1, y1):
+        """Pixels (4, 2), clockwise, of the rectangle with these limits in sides from V1."""
+        return lens.project(self._corners_mm(x0, y0, x1, y1))
 
     def vertices(self, lens):
         """True vertices V1 V2 V3 V4 (4, 2) in pixels, not rounded."""

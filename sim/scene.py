@@ -1,10 +1,10 @@
 """Marker frames with known truth: a description of a scene in, a picture and its true poses out.
 
 The picture is ground (uniform, or a photograph), a light quiet zone on a photograph, the black square and its
-white inner square, each area-sampled in linear grey levels; then Gaussian blur, a lighting gradient, Gaussian
-noise, and last rounding and clipping to 0..255.  The same Scene gives the same picture bit for bit.  Units
-and frames of reference are those of ``sim.marker``.  A 640 x 480 grey frame with one marker of 200 px takes
-15 ms.
+white pattern, each area-sampled in linear grey levels; then motion blur, Gaussian blur, a lighting gradient,
+Gaussian noise, and last rounding and clipping to 0..255.  The same Scene gives the same picture bit for bit.
+Units and frames of reference are those of ``sim.marker``.  A 640 x 480 grey frame with one marker of 200 px
+takes 15 ms.
 """
 
 from dataclasses import asdict, dataclass, replace
@@ -12,9 +12,11 @@ from dataclasses import asdict, dataclass, replace
 import cv2
 import numpy as np
 
-from sim.marker import INNER, Lens, MarkerPose, marker_pose
+from sim.marker import Lens, MarkerPose, marker_pose
+from sim.pattern import RASTERPOSE, Pattern
 from sim.photos import photographs
 from sim.scene_coverage import coverage
+from sim.scene_motion import move
 from sim.scene_place import place_markers
 
 __all__ = [
@@ -59,6 +61,11 @@ class Scene:
         Width of the white border around a marker on a photograph, in sides.
     seed : int
         Of the noise, not negative.
+    motion_px, motion_deg : float
+        Length of the path that the picture moves along during the exposure, not negative, and its direction
+        from x towards y. The truth is that of the path's middle.
+    pattern : Pattern
+        What all markers show inside their black square.
     lens : Lens or None
         None is ``Lens.of_frame(width, height)``.
 
@@ -80,6 +87,9 @@ class Scene:
     background: np.ndarray | None = None
     quiet_zone: float = 0.1
     seed: int = 0
+    motion_px: float = 0.0
+    motion_deg: float = 0.0
+    pattern: Pattern = RASTERPOSE
     lens: Lens | None = None
 
     def __post_init__(self):
@@ -88,7 +98,7 @@ class Scene:
         for name in ("black", "white"):
             if not 0 <= getattr(self, name) <= 255:
                 raise ValueError(f"Grey level {name} must be 0 to 255, not {getattr(self, name)!r}")
-        for name in ("blur_px", "noise_sigma", "quiet_zone", "seed"):
+        for name in ("blur_px", "noise_sigma", "quiet_zone", "seed", "motion_px"):
             if not getattr(self, name) >= 0:
                 raise ValueError(f"Parameter {name} must not be negative, not {getattr(self, name)!r}")
         if self.background is not None:
@@ -117,22 +127,24 @@ def _truth(marker, lens):
     }
 
 
-def _cover(scene, image, marker, limits):
-    """Window of the float32 image that a marker's square touches, and the part of its pixels it covers."""
-    window, part = coverage(marker.outline(scene.lens, *limits), scene.width, scene.height)
+def _cover(scene, image, outline):
+    """Window of the float32 image that a polygon touches, and the part of its pixels it covers."""
+    window, part = coverage(outline, scene.width, scene.height)
     return window, part if image.ndim == 2 else part[:, :, None]
 
 
 def _draw(scene, image, marker):
     """Lay one marker over a float32 image, in place."""
     if scene.background is not None:
-        window, part = _cover(scene, image, marker, (-scene.quiet_zone, 1 + scene.quiet_zone))
+        window, part = _cover(scene, image, marker.outline(scene.lens, -scene.quiet_zone, 1 + scene.quiet_zone))
         image[window] += part * (scene.white - image[window])
-    # The squares are nested, so their steps add up to the area's mean even where a pixel sees several edges.
+    # White lies within black, so their steps add up to the area's mean even where a pixel sees several edges.
     step = scene.black - scene.white
-    for limits, change in (((0, 1), step), (INNER, -step)):
-        window, part = _cover(scene, image, marker, limits)
-        image[window] += part * change
+    window, part = _cover(scene, image, marker.outline(scene.lens))
+    image[window] += part * step
+    for rectangle in scene.pattern.rectangles:
+        window, part = _cover(scene, image, marker.rectangle(scene.lens, *rectangle))
+        image[window] -= part * step
 
 
 def _lighting(scene):
@@ -152,6 +164,8 @@ def render(scene):
         image = scene.background.astype(np.float32)
     for marker in scene.markers:
         _draw(scene, image, marker)
+    if scene.motion_px:
+        image = move(image, scene.motion_px, scene.motion_deg)
     if scene.blur_px:
         image = cv2.GaussianBlur(image, (0, 0), scene.blur_px, borderType=cv2.BORDER_REPLICATE)
     # Blur leaves a linear ramp as it is, except at the border: so light comes after it.
@@ -164,12 +178,23 @@ def render(scene):
     return Frame(np.clip(np.rint(image), 0, 255).astype(np.uint8), truth)
 
 
-def random_marker_scene(seed, width=640, height=480, side_px=(40, 200), tilt_deg=(0, 60), count=1, **scene_kwargs):
-    """Scene of ``count`` markers at random: every roll, every axis of tilt, everywhere in the frame.
+def random_marker_scene(
+    seed,
+    width=640,
+    height=480,
+    side_px=(40, 200),
+    tilt_deg=(0, 60),
+    roll_deg=(0, 360),
+    off_axis_deg=None,
+    count=1,
+    **scene_kwargs,
+):
+    """Scene of ``count`` markers at random: every axis of tilt, everywhere in the frame.
 
-    Quiet zones keep ``scene_place.MARGIN_PX`` from the border and each other.  ``side_px`` and ``tilt_deg``
-    are ranges of ``marker_pose``'s parameters, uniform (with several markers, large ones that do not fit are
-    drawn again); the remaining arguments are Scene's.  ``seed`` decides the poses and the noise.
+    Quiet zones keep ``scene_place.MARGIN_PX`` from the border and each other.  ``side_px``, ``tilt_deg``,
+    ``roll_deg`` and ``off_axis_deg`` are ranges as ``scene_place.place_markers`` has them (with several
+    markers, large ones that do not fit are drawn again); the remaining arguments are Scene's.  ``seed``
+    decides the poses and the noise.
 
     Raises
     ------
@@ -178,7 +203,8 @@ def random_marker_scene(seed, width=640, height=480, side_px=(40, 200), tilt_deg
     """
     ground = Scene(width=width, height=height, seed=seed, **scene_kwargs)
     rng = np.random.default_rng([_POSES, seed])
-    markers = place_markers(rng, ground.lens, width, height, side_px, tilt_deg, count, ground.quiet_zone)
+    ranges = {"side_px": side_px, "tilt_deg": tilt_deg, "roll_deg": roll_deg, "off_axis_deg": off_axis_deg}
+    markers = place_markers(rng, ground.lens, width, height, count=count, quiet_zone=ground.quiet_zone, **ranges)
     return replace(ground, markers=markers)
 
 

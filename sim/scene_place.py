@@ -25,14 +25,24 @@ def _within(zone, width, height):
     return np.all(zone >= MARGIN_PX) and np.all(zone <= [width - 1 - MARGIN_PX, height - 1 - MARGIN_PX])
 
 
-def _place_one(rng, lens, width, height, side_px, tilt_deg, quiet_zone, zones):
+def _centre(rng, lens, width, height, off_axis_deg):
+    """A place in the frame, px: anywhere, or at an angle from the optical axis in any direction."""
+    if off_axis_deg is None:
+        return rng.uniform([0, 0], [width - 1, height - 1])
+    radius, direction = np.tan(np.radians(rng.uniform(*off_axis_deg))), rng.uniform(0, 2 * np.pi)
+    (center,) = lens.project([(radius * np.cos(direction), radius * np.sin(direction), 1.0)])
+    return center
+
+
+def _place_one(rng, lens, width, height, ranges, quiet_zone, zones):
     """One marker and its quiet zone's outline, or None.
 
     Size and angles are drawn once and only the centre again, or large markers would become rare.
     """
-    shape = (rng.uniform(*side_px), rng.uniform(*tilt_deg), rng.uniform(0, 360), rng.uniform(0, 360))
+    side_px, tilt_deg, roll_deg, off_axis_deg = ranges
+    shape = (rng.uniform(*side_px), rng.uniform(*tilt_deg), rng.uniform(0, 360), rng.uniform(*roll_deg))
     for _ in range(_CENTRES):
-        center = rng.uniform([0, 0], [width - 1, height - 1])
+        center = _centre(rng, lens, width, height, off_axis_deg)
         try:
             marker = marker_pose(center, *shape, lens)
             zone = marker.outline(lens, -quiet_zone, 1 + quiet_zone)
@@ -43,8 +53,8 @@ def _place_one(rng, lens, width, height, side_px, tilt_deg, quiet_zone, zones):
     return None
 
 
-def place_markers(rng, lens, width, height, side_px, tilt_deg, count, quiet_zone):
-    """Tuple of ``count`` MarkerPose with random size, tilt, axis of tilt (0-360), roll (0-360) and place.
+def place_markers(rng, lens, width, height, *, side_px, tilt_deg, roll_deg, off_axis_deg, count, quiet_zone):
+    """Tuple of ``count`` MarkerPose with random size, tilt, axis of tilt (0-360), roll and place.
 
     Parameters
     ----------
@@ -52,8 +62,11 @@ def place_markers(rng, lens, width, height, side_px, tilt_deg, count, quiet_zone
     lens : Lens
     width, height : int
         Frame, pixels.
-    side_px, tilt_deg : (low, high)
+    side_px, tilt_deg, roll_deg : (low, high)
         Ranges of ``marker_pose``'s parameters, uniform.
+    off_axis_deg : (low, high) or None
+        Range of the angle between the optical axis and the line of sight to the centre, uniform; None is
+        everywhere in the frame alike.
     quiet_zone : float
         Sides around each marker that stay free.
 
@@ -66,13 +79,18 @@ def place_markers(rng, lens, width, height, side_px, tilt_deg, count, quiet_zone
         raise ValueError(f"Sides must be a positive range in pixels, not {side_px!r}")
     if not 0 <= tilt_deg[0] <= tilt_deg[1] < 90:
         raise ValueError(f"Tilts must be a range from 0 to below 90 degrees, not {tilt_deg!r}")
+    if not -360 <= roll_deg[0] <= roll_deg[1] <= 360:
+        raise ValueError(f"Rolls must be a range from -360 to 360 degrees, not {roll_deg!r}")
+    if off_axis_deg is not None and not 0 <= off_axis_deg[0] <= off_axis_deg[1] < 90:
+        raise ValueError(f"Angles off the axis must be a range from 0 to below 90 degrees, not {off_axis_deg!r}")
     if count < 0:
         raise ValueError(f"Count of markers must not be negative, not {count!r}")
+    ranges = side_px, tilt_deg, roll_deg, off_axis_deg
     for _ in range(_SCENES):
         placed = []
         while len(placed) < count:
             zones = [zone for _, zone in placed]
-            one = _place_one(rng, lens, width, height, side_px, tilt_deg, quiet_zone, zones)
+            one = _place_one(rng, lens, width, height, ranges, quiet_zone, zones)
             if one is None:
                 break
             placed.append(one)

@@ -12,7 +12,9 @@ from sim.cli.clocks import clocks
 from sim.cli.demo import demo
 from sim.cli.errors import UserError
 from sim.cli.render import render
+from sim.cli.report_command import report
 from sim.cli.run import run
+from sim.cli.sweep import sweep
 from sim.pictures import PictureError
 
 __all__ = ["main"]
@@ -24,7 +26,7 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
 )
-for command in (run, blobs, corners, render, demo, bench, clocks):
+for command in (run, blobs, corners, render, demo, bench, clocks, report, sweep):
     app.command()(command)
 
 

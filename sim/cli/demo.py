@@ -8,13 +8,13 @@ from rich import box
 from rich.table import Table
 
 from sim.cli import options
-from sim.cli.angles import rotation_between, tilt
 from sim.cli.console import printer, progress
 from sim.cli.engines import sensor_for
 from sim.cli.files import checked_folder, save_picture, write_json
 from sim.cli.run import analyse, save_overlay
 from sim.cli.table import print_frame
 from sim.marker import SIDE_MM
+from sim.rotations import rotation_between, tilt
 
 __all__ = ["demo"]
 

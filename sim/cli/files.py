@@ -8,7 +8,7 @@ import sys
 from sim.cli.errors import UserError, reported
 from sim.pictures import write_picture
 
-__all__ = ["STDOUT", "checked_folder", "checked_json", "save_picture", "unique_names", "write_json"]
+__all__ = ["STDOUT", "checked_file", "checked_folder", "checked_json", "save_picture", "unique_names", "write_json"]
 
 # Lists of plain values, which are easier to read on one line; the line breaks keep it off what is in strings.
 _NUMBERS = re.compile(r'\[\n([^\[\]{}"]*)\n *\]')
@@ -27,8 +27,12 @@ def checked_folder(path):
 
 def checked_json(path):
     """Complain now if a JSON file could not be written later; None and ``-`` are in order."""
-    if path in (None, STDOUT):
-        return
+    if path not in (None, STDOUT):
+        checked_file(path)
+
+
+def checked_file(path):
+    """Complain now if a file could not be written later, and make its folder."""
     if pathlib.Path(path).is_dir():
         raise UserError(f"cannot write {path}: is a directory")
     checked_folder(pathlib.Path(path).parent)

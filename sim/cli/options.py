@@ -14,6 +14,7 @@ __all__ = [
     "DEFAULTS",
     "FRAME",
     "BrightOption",
+    "DaskOption",
     "Engine",
     "EngineOption",
     "FastNOption",
@@ -24,10 +25,12 @@ __all__ = [
     "PoseOption",
     "PoseSource",
     "ThresholdOption",
+    "WorkersOption",
     "camera_for",
     "checked_for_firmware",
     "checked_settings",
     "checked_side",
+    "checked_workers",
     "pose_source",
 ]
 
@@ -60,6 +63,10 @@ ThresholdOption = Annotated[int, typer.Option(help="Foreground is darker than th
 BrightOption = Annotated[bool, typer.Option("--bright", help="Foreground is what is not darker instead.")]
 FastNOption = Annotated[int, typer.Option(help="Contiguous circle pixels that make a corner, 9 to 12.")]
 FastThresholdOption = Annotated[int, typer.Option(help="Contrast of a corner, exclusive, 0 to 255.")]
+WorkersOption = Annotated[int, typer.Option(help="Processes; -1 is one for each core.")]
+DaskOption = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler to work on, such as tcp://host:8786.")
+]
 MaxArcOption = Annotated[int, typer.Option(help="Longest arc that is still a corner, 9 to 16.")]
 
 
@@ -74,6 +81,12 @@ def checked_side(side_mm):
     if not 0 < side_mm < math.inf:
         raise UserError(f"side must be positive and finite, not {side_mm} mm")
     return side_mm
+
+
+def checked_workers(workers):
+    """Complain about a number of processes that is none."""
+    if workers < -1 or workers == 0:
+        raise UserError(f"workers must be -1 or at least 1, not {workers}")
 
 
 def camera_for(width, height, focal, center):

@@ -5,7 +5,7 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from sim.cli.angles import roll_pitch_yaw, tilt
+from sim.rotations import roll_pitch_yaw, tilt
 
 __all__ = ["frame_kind", "markers_table", "print_frame", "summary"]
 

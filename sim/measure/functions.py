@@ -73,7 +73,7 @@ def function_inputs(name):
     return inputs(base if base in APPROXIMATIONS else "sqrt")
 
 
-def measure_function(system, library, name):
+def measure_function(system, library, name, count=1000):
     """FunctionClocks of ``name``, or None if the library does not have it.
 
     Parameters
@@ -83,6 +83,8 @@ def measure_function(system, library, name):
         A key of :data:`LIBRARIES`.
     name : str
         A key of :data:`FUNCTIONS`.
+    count : int
+        How many of the inputs are taken, 1 to 1,000.
 
     Raises
     ------
@@ -93,15 +95,17 @@ def measure_function(system, library, name):
     names = _names(image)
     if name not in names:
         return None
-    drawn = function_inputs(name)
+    drawn = function_inputs(name)[:count]
     clocks, results = [], []
     for start in range(0, len(drawn), _MOST):
         batch = drawn[start : start + _MOST]
-        job = np.array([names.index(name), len(batch)], "<u4").tobytes() + batch.astype("<f4").tobytes()
+        padded = np.zeros(_MOST, "<f4")
+        padded[: len(batch)] = batch
+        job = np.array([names.index(name), len(batch)], "<u4").tobytes() + padded.tobytes()
         loaded = execute(system, image, job)
         empty = read_number(system, loaded, "empty_clocks")
-        clocks.append(read_array(system, loaded, "clocks", np.uint32).astype(np.int64) - empty)
-        results.append(read_array(system, loaded, "results", np.float32))
+        clocks.append(read_array(system, loaded, "clocks", np.uint32)[: len(batch)].astype(np.int64) - empty)
+        results.append(read_array(system, loaded, "results", np.float32)[: len(batch)])
     clocks, results = np.concatenate(clocks), np.concatenate(results)
     judge = FUNCTIONS[name]
     true = np.array([judge.true(float(x)) for x in drawn])
