@@ -15,7 +15,11 @@ _JOINED = 16
 
 def ports_of(top, files, folder):
     """``[(name, direction, width)]`` of a module, by Yosys."""
-    yosys(f"read_verilog {' '.join(files)}\nhierarchy -top {top}\nwrite_json -selected ports.json", folder, "ports.log")
+    yosys(
+        f"read_verilog {' '.join(files)}\nhierarchy -top {top}\nselect {top}\nproc\nwrite_json -selected ports.json\n",
+        folder,
+        "ports.log",
+    )
     module = json.loads((folder / "ports.json").read_text())["modules"][top]
     return [(name, port["direction"], len(port["bits"])) for name, port in module["ports"].items()]
 
