@@ -75,6 +75,9 @@ def trace_frame(name):
         "columns": _WIDTH,
         "rows": _HEIGHT,
         "min_side": settings.marker_min_side,
+        "min_width": settings.blob_min_width,
+        "min_height": settings.blob_min_height,
+        "min_area": settings.blob_min_area,
     }
     run = engine.run({"i": _beats(image)}, config, drain_clocks=_DRAIN)
 

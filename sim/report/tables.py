@@ -9,7 +9,7 @@ _SENSOR_HZ = 50e6
 _JUDGED = {
     "found_rate": ("found", False, "{:.1%}"),
     "vertex_rms_px": ("rms of the vertices", True, "{:.3g} px"),
-    "translation_median_pct": ("error of the place", True, "{:.3g} % of the range"),
+    "translation_median_pct": ("error of the place", True, "{:.3g} % of range"),
     "rotation_median_deg": ("error of the rotation", True, "{:.3g} degrees"),
     "flip_rate": ("wrong poses", True, "{:.1%}"),
 }
