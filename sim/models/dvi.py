@@ -92,5 +92,9 @@ class DviMonitor:
         for name in "gr":
             if (channels[name][2] != active).any() or channels[name][1].any():
                 raise ValueError(f"channel {name} has a blanking of its own")
+        # The sync lines keep their levels while there are colours.
+        blank = np.where(active, 0, np.arange(len(active)))
+        blank[0] = np.argmin(active)
+        control = control[np.maximum.accumulate(blank)]
         rgb = np.stack([np.where(active, channels[name][0], 0) for name in "rgb"], axis=1)
         return control & 1, control >> 1, rgb, active

@@ -52,6 +52,8 @@ class Ulx3s(Elaboratable):
         First words of the processor's memory.
     mode : VideoMode
         Of the monitor.
+    clock_hz : int
+        What everything but the PLL is told of the system's clock. Less shortens simulations.
     tick_us, start_clocks : int
         Unit of the camera's pauses, and length of the reset and of bouncing, for simulations.
 
@@ -61,13 +63,16 @@ class Ulx3s(Elaboratable):
         Name -> Signal or IOPort, as in :data:`~hdl.boards.ulx3s.pins.PINS`.
     """
 
-    def __init__(self, *, config=None, program=(), mode=VGA, tick_us=1000, start_clocks=SYSTEM_HZ // 100):
+    def __init__(
+        self, *, config=None, program=(), mode=VGA, clock_hz=SYSTEM_HZ, tick_us=1000, start_clocks=SYSTEM_HZ // 100
+    ):
         self._config = config or SensorConfig()
         self._mode = mode
+        self._clock_hz = clock_hz
         self._start = Start(clocks=start_clocks)
         self._debounce = Debounce(width=1, clocks=start_clocks)
-        self._camera = Ov7670(clock_hz=SYSTEM_HZ, tick_us=tick_us)
-        self._system = System(config=self._config, program=program, clock_hz=SYSTEM_HZ, has_view=True)
+        self._camera = Ov7670(clock_hz=clock_hz, tick_us=tick_us)
+        self._system = System(config=self._config, program=program, clock_hz=clock_hz, has_view=True)
         self.ports = {
             name: (IOPort if pins.direction == "inout" else Signal)(len(pins.names), name=name)
             for name, pins in PINS.items()
@@ -82,7 +87,7 @@ class Ulx3s(Elaboratable):
         m.submodules.display = display = Display(config=self._config, mode=self._mode)
         m.submodules.dvi = dvi = DomainRenamer("pixel")(Dvi())
         m.submodules.gpdi = gpdi = Gpdi()
-        m.submodules.lights = lights = Lights(second_clocks=SYSTEM_HZ)
+        m.submodules.lights = lights = Lights(second_clocks=self._clock_hz)
         m.submodules.debounce = debounce = self._debounce
         self._clock(m, clocks)
         self._connect_camera(m, camera, debounce)
