@@ -4,7 +4,7 @@ PYTHON = python3.11
 JOBS = 2
 PY = .venv/bin/python
 
-.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs quartus ip synth report clean
+.PHONY: help demo run frame-given test verilog firmware lint bench exhaustive docs quartus ip synth report ulx3s clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list
@@ -48,6 +48,9 @@ docs: .venv/installed ## Write the register map for people and for C: build/out/
 
 quartus: .venv/installed ## Write the Quartus project of the DE2-115 with a D5M camera: build/out/quartus
 	$(PY) -m build.quartus $(ARGS)
+
+ulx3s: .venv/installed ## Make a bitstream for the ULX3S with open tools, which takes minutes: build/out/ulx3s
+	$(PY) -m build.ulx3s $(ARGS)
 
 ip: .venv/installed ## Package the hardware for Platform Designer, FuseSoC and IP-XACT: build/out/ip
 	$(PY) -m firmware.toolchain sensor

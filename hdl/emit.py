@@ -84,6 +84,7 @@ BLOCKS = {
     "demosaic": _block("hdl.camera.demosaic:Demosaic", width="width"),
     "d5m": _block("hdl.camera.d5m:D5m", width="width"),
     "ov7670": _block("hdl.camera.ov7670:Ov7670"),
+    "display": _block("hdl.display.display:display", **_FRAME),
     "ram": _block("hdl.system.ram:Ram"),
     "decoder": _block("hdl.system.system:decoder"),
     "register_bridge": _block("hdl.system.system:register_bridge"),

@@ -40,6 +40,8 @@ class Sensor(wiring.Component):
     Parameters
     ----------
     config : SensorConfig
+    has_view : bool
+        There is a second reader of the published results, such as a display.
 
     Members
     -------
@@ -47,17 +49,21 @@ class Sensor(wiring.Component):
     bus : In(RegisterBus)
         See ``hdl/registers.rdl``.
     irq : Out(1)
+    view : In(ResultView(...))
+        With ``has_view``: see :class:`~hdl.stores.result_view.ResultView`.
     """
 
-    def __init__(self, *, config=None):
+    def __init__(self, *, config=None, has_view=False):
         self._config = config or SensorConfig()
         self._bank = RegisterBank(registers=sensor_map(self._config))
+        self._has_view = has_view
         super().__init__(
             {
                 "camera": In(unstalled(CameraPixel)),
                 "bus": In(RegisterBus(self._bank.map.addr_width)),
                 "irq": Out(1),
             }
+            | ({"view": In(sensor_stores.result_view(self._config))} if has_view else {})
         )
 
     def elaborate(self, platform):
@@ -101,7 +107,8 @@ class Sensor(wiring.Component):
         ]
         self._connect_settings(m, registers, framer, threshold, size_filter, corners, matching, publisher)
         self._connect_events(m, registers, framer, segmentation, matching, publisher)
-        self._connect_stores(m, registers, publisher)
+        stores, addresses = self._connect_stores(m, registers, publisher)
+        self._connect_readers(m, publisher, stores, addresses)
         self._connect_counters(m, registers, size_filter, matching, publisher)
         self._connect_times(m, registers, framer, publisher)
         return m
@@ -172,8 +179,8 @@ class Sensor(wiring.Component):
         ]
 
         window, item = registers.blob_window, stores["blob"].read_data
+        addresses = {"blob": window.index}
         m.d.comb += [
-            stores["blob"].read_addr.eq(window.index),
             window.box_min.x.eq(item.x_min),
             window.box_min.y.eq(item.y_min),
             window.box_max.x.eq(item.x_max),
@@ -181,20 +188,15 @@ class Sensor(wiring.Component):
             window.area.pixels.eq(item.area),
         ]
         window, item = registers.corner_window, stores["corner"].read_data
+        addresses["corner"] = window.index
         m.d.comb += [
-            stores["corner"].read_addr.eq(window.index),
             window.position.x.eq(item.x),
             window.position.y.eq(item.y),
             *(getattr(window.detail, field).eq(item[field]) for field in ("score", "arc", "bright")),
         ]
         published, live, item = registers.marker_window, registers.live_window, stores["marker"].read_data
-        m.d.comb += [
-            stores["marker"].read_live.eq(live.select),
-            # One read port for all: the registers X1 to Y4 have it whenever no window is asked.
-            stores["marker"].read_addr.eq(
-                Mux(published.select | live.select, published.index, registers.marker_address.marker)
-            ),
-        ]
+        # One read port for all: the registers X1 to Y4 have it whenever no window is asked.
+        addresses["marker"] = Mux(published.select | live.select, published.index, registers.marker_address.marker)
         for window in (published, live):
             for name, _ in item.shape():
                 register = getattr(window, name)
@@ -206,6 +208,28 @@ class Sensor(wiring.Component):
             m.d.comb += [
                 getattr(registers, f"x{vertex}").column.eq(item[f"v{vertex}"].x),
                 getattr(registers, f"y{vertex}").row.eq(item[f"v{vertex}"].y),
+            ]
+        return stores, addresses
+
+    def _connect_readers(self, m, publisher, stores, addresses):
+        """The bus has the stores' read ports; a view has them in clocks without a read on the bus."""
+        live = self._bank.live_window.select
+        if not self._has_view:
+            m.d.comb += [stores[name].read_addr.eq(address) for name, address in addresses.items()]
+            m.d.comb += stores["marker"].read_live.eq(live)
+            return
+        m.d.comb += [
+            stores["marker"].read_live.eq(live & self.bus.read),
+            self.view.free.eq(~self.bus.read),
+            self.view.published.eq(publisher.published),
+        ]
+        for name, address in addresses.items():
+            store, view = stores[name], getattr(self.view, f"{name}s")
+            m.d.comb += [
+                store.read_addr.eq(Mux(self.bus.read, address, view.index)),
+                view.data.eq(store.read_data),
+                view.count.eq(store.count),
+                view.bank.eq(store.bank),
             ]
 
     @staticmethod

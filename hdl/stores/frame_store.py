@@ -65,6 +65,8 @@ class FrameStore(wiring.Component):
         Items of the published frame that found no room.
     live_count : :py:`Out(range(depth + 1))`
         Items of the frame in progress so far.
+    bank : :py:`Out(1)`
+        The bank that is published: it changes in the clock in which ``count`` becomes that of another frame.
     stored, overflow : :py:`Out(1)`
         One-clock strobes, in the clock of an ``ITEM``: it is kept; it is dropped.
     """
@@ -86,6 +88,7 @@ class FrameStore(wiring.Component):
                 "count": Out(range(depth + 1)),
                 "dropped": Out(16),
                 "live_count": Out(range(depth + 1)),
+                "bank": Out(1),
                 "stored": Out(1),
                 "overflow": Out(1),
             }
@@ -105,6 +108,7 @@ class FrameStore(wiring.Component):
             write.en.eq(self.stored),
             write.addr.eq(Cat(self.live_count[:-1], writing)),
             write.data.eq(self.i),
+            self.bank.eq(~writing),
             read.addr.eq(Cat(self.read_addr, Mux(self.read_live, writing, ~writing))),
             self.read_data.eq(read.data),
         ]

@@ -5,31 +5,47 @@ from amaranth.lib import data
 from hdl.config import SensorConfig
 from hdl.stores.frame_store import FrameStore
 from hdl.stores.publisher import Publisher
+from hdl.stores.result_view import ResultView
 from hdl.vision.blob import box_layout
 from hdl.vision.corners import corner_item
 from hdl.vision.matching.geometry import marker_layout
 
-__all__ = ["blob_store", "corner_store", "marker_store", "publisher"]
+__all__ = ["blob_store", "corner_store", "marker_store", "publisher", "result_view"]
 
 
-def _store(layout, fields, depth):
-    return FrameStore(shape=data.StructLayout({name: layout[name].shape for name in fields}), depth=depth)
+#: What is kept of the items of each list.
+_KEPT = {
+    "blob": (box_layout, ("x_min", "y_min", "x_max", "y_max", "area")),
+    "corner": (corner_item, ("x", "y", "score", "arc", "bright")),
+    "marker": (marker_layout, ("v1", "v2", "v3", "v4", "box_min", "box_max", "area", "gap_area")),
+}
+
+
+def _shape(name, width, height):
+    layout, fields = _KEPT[name]
+    return data.StructLayout({field: layout(width, height)[field].shape for field in fields})
 
 
 def blob_store(*, width, height, depth=SensorConfig.blob_depth):
     """Boxes and areas of a frame's components."""
-    return _store(box_layout(width, height), ("x_min", "y_min", "x_max", "y_max", "area"), depth)
+    return FrameStore(shape=_shape("blob", width, height), depth=depth)
 
 
 def corner_store(*, width, height, depth=SensorConfig.corner_depth):
     """Corners of a frame."""
-    return _store(corner_item(width, height), ("x", "y", "score", "arc", "bright"), depth)
+    return FrameStore(shape=_shape("corner", width, height), depth=depth)
 
 
 def marker_store(*, width, height, depth=SensorConfig.marker_depth):
     """Markers of a frame."""
-    fields = ("v1", "v2", "v3", "v4", "box_min", "box_max", "area", "gap_area")
-    return _store(marker_layout(width, height), fields, depth)
+    return FrameStore(shape=_shape("marker", width, height), depth=depth)
+
+
+def result_view(config):
+    """How a display reads the stores of a sensor with this :class:`~hdl.config.SensorConfig`."""
+    return ResultView(
+        **{f"{name}s": (_shape(name, config.width, config.height), getattr(config, f"{name}_depth")) for name in _KEPT}
+    )
 
 
 def publisher(*, width, height):

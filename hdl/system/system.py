@@ -26,6 +26,7 @@ from hdl.peripherals.watchdog import Watchdog
 from hdl.pixels import CameraPixel, unstalled
 from hdl.regs.map import system_maps
 from hdl.sensor import Sensor
+from hdl.stores import sensor_stores
 from hdl.system.addresses import RAM, REGISTERS, REGISTERS_SIZE
 from hdl.system.cpu import Cpu
 from hdl.system.decoder import Decoder
@@ -51,6 +52,8 @@ class System(wiring.Component):
     clock_hz : int
         What the program is told of the clock, and what the display's times are counted from: a multiple of 1 MHz,
         because the program's time stamps are in microseconds.
+    has_view : bool
+        There is a display of the results: see :class:`~hdl.sensor.Sensor`.
 
     Raises
     ------
@@ -73,13 +76,16 @@ class System(wiring.Component):
         Character display.
     irq : :py:`Out(1)`
         The sensor's interrupt: by the program's settings, a frame is published and not yet noticed by it.
+    view : :py:`In(ResultView(...))`
+        With ``has_view``: the published results, for a display.
     """
 
-    def __init__(self, *, config, program=(), clock_hz=CLOCK_HZ):
+    def __init__(self, *, config, program=(), clock_hz=CLOCK_HZ, has_view=False):
         if clock_hz < 1_000_000 or clock_hz % 1_000_000:
             raise ValueError(f"clock_hz must be a multiple of 1 MHz, not {clock_hz!r}")
         self._config = config
         self._clock_hz = clock_hz
+        self._has_view = has_view
         self._ram = Ram(size=RAM_BYTES, contents=program)
         super().__init__(
             {
@@ -92,11 +98,12 @@ class System(wiring.Component):
                 "lcd": Out(LcdPins()),
                 "irq": Out(1),
             }
+            | ({"view": In(sensor_stores.result_view(config))} if has_view else {})
         )
 
     def elaborate(self, platform):
         m = Module()
-        m.submodules.sensor = sensor = Sensor(config=self._config)
+        m.submodules.sensor = sensor = Sensor(config=self._config, has_view=self._has_view)
         m.submodules.system_id = system_id = SystemId(clock_hz=self._clock_hz, ram_bytes=RAM_BYTES)
         m.submodules.uart = uart = Uart()
         m.submodules.timer = timer = Timer()
@@ -119,6 +126,8 @@ class System(wiring.Component):
             },
         )
         connect(m, lcd.pins, flipped(self.lcd))
+        if self._has_view:
+            connect(m, flipped(self.view), sensor.view)
         m.d.comb += [
             sensor.camera.payload.eq(self.camera.payload),
             sensor.camera.valid.eq(self.camera.valid),

@@ -31,7 +31,7 @@ def run(*command, **options):
 
 
 #: Clocks of blocks that have more than ``clk``.
-CLOCKS = dict.fromkeys(("crossing", "d5m", "ov7670"), ("clk", "pixel_clk"))
+CLOCKS = dict.fromkeys(("crossing", "d5m", "ov7670", "display"), ("clk", "pixel_clk"))
 
 
 def clock_errors(text, clocks=("clk",)):

@@ -89,6 +89,30 @@ class _Software:
                 yield _NOTHING
 
 
+class _Viewer:
+    """A second reader, that asks for another item of each list in every clock and is told when it was given one."""
+
+    def __init__(self, dut, seed):
+        self._free, self._random = dut.view__free, np.random.default_rng(seed)
+        self._lists = [
+            [getattr(dut, f"view__{name}__{part}") for part in ("index", "count", "data")]
+            for name in ("blobs", "corners", "markers")
+        ]
+        self._asked, self.seen = [], []
+
+    def step(self):
+        """Before the inputs of a clock change: take what was read, and ask anew."""
+        if int(self._free.value):
+            for number, (index, count) in enumerate(self._asked):
+                if index < count:
+                    self.seen.append((number, index, count, f"{int(self._lists[number][2].value):x}"))
+        self._asked = []
+        for index, count, _ in self._lists:
+            items = int(count.value)
+            self._asked.append((int(self._random.integers(0, max(items, 1))), items))
+            index.value = self._asked[-1][0]
+
+
 @cocotb.test()
 async def play(dut):
     folder, plan = load_plan()
@@ -100,8 +124,11 @@ async def play(dut):
         port.drive(0)
     Clock(dut.clk, 10, unit="ns").start(start_high=False)
     falling, program = FallingEdge(dut.clk), None
+    viewer = _Viewer(dut, int(plan["view_seed"])) if "view_seed" in plan else None
     for clock, pixel in enumerate(plan["pixels"].tolist()):  # -1: none
         await falling
+        if viewer:
+            viewer.step()
         rst.drive(clock in resets)
         if clock in resets:
             program = software.run()
@@ -110,4 +137,5 @@ async def play(dut):
             payload.drive(pixel)
         for port, value in zip(bus, _NOTHING if clock in resets else next(program), strict=True):
             port.drive(value)
-    np.savez(folder / "captured.npz", words=np.array(software.words, np.uint32), frames=software.frames)
+    seen = np.array(viewer.seen if viewer else [], dtype=str).reshape(-1, 4)
+    np.savez(folder / "captured.npz", words=np.array(software.words, np.uint32), frames=software.frames, seen=seen)

@@ -56,8 +56,8 @@ def spread(parts):
     return pixels, resets
 
 
-def play(simulator, size, parts, drain_clocks):
-    """Words of every published frame."""
+def play(simulator, size, parts, drain_clocks, verilog=None, **viewer):
+    """Words of every published frame, and what a viewer has seen."""
     registers = sensor_map(SensorConfig(width=size[0], height=size[1]))
     entries = {entry.name: entry for entry in (*registers.registers, *registers.windows)}
     windows = [(f"{name}s", f"{name}_window", entries[f"{name}_window"].stride // 4)
@@ -73,7 +73,7 @@ def play(simulator, size, parts, drain_clocks):
     }
     captured = harness.simulate(
         emit.TOP,
-        emit.emit(emit.TOP, *size),
+        verilog or emit.emit(emit.TOP, *size),
         simulator,
         {
             "pixels": np.concatenate([*pixels, np.full(drain_clocks, -1)]),
@@ -84,11 +84,12 @@ def play(simulator, size, parts, drain_clocks):
             "windows": np.array(windows, dtype=str),
             "bits": [bit("control", "enable"), bit("control", "hold"), bit("status", "held"),
                      bit("irq_status", "published")],
+            **viewer,
         },
         size=f"{size[0]}x{size[1]}",
         testbench="tests.system.tb_sensor",
     )  # fmt: skip
-    return np.split(captured["words"], np.cumsum(captured["frames"]))[:-1]
+    return np.split(captured["words"], np.cumsum(captured["frames"]))[:-1], captured["seen"]
 
 
 def check(got, expected):
@@ -116,7 +117,7 @@ def test_small_frames(simulator):
         for number in numbers:
             first = number * 48 * 64
             expected.append(encoded(number, models[number], int(time[first]), int(time[first + 48 * 64 - 1])))
-    check(play(simulator, size, parts, 1500), expected)
+    check(play(simulator, size, parts, 1500)[0], expected)
 
 
 def test_full_frame():
@@ -127,4 +128,4 @@ def test_full_frame():
     (model,) = ModelSensor().run([frame])
     assert len(model.markers) == 5
     part = (camera_pixels(frame).astype(np.int64), 0)
-    check(play("verilator", (640, 480), [part], 4000), [encoded(0, model, SETUP, SETUP + 640 * 480 - 1)])
+    check(play("verilator", (640, 480), [part], 4000)[0], [encoded(0, model, SETUP, SETUP + 640 * 480 - 1)])

@@ -1,0 +1,1 @@
+"""A bitstream for the ULX3S by open tools: ``python -m build.ulx3s``."""

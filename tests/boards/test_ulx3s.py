@@ -1,0 +1,161 @@
+"""The ULX3S in cocotb: pictures of an OV7670 that had to be set up, poses on the serial line, and DVI on a monitor."""
+
+import re
+
+import numpy as np
+import pytest
+
+from build.ulx3s import bitstream
+from firmware.layout import settings_bytes
+from firmware.reference import Camera
+from firmware.reference.sentence import parse
+from firmware.toolchain.images import build
+from hdl.boards.emit import board_verilog
+from hdl.boards.ulx3s.pins import PINS, constraints
+from hdl.boards.ulx3s.top import Ulx3s
+from hdl.config import SensorConfig
+from hdl.display.timing import VideoMode
+from sim.models.dvi import DviMonitor
+from sim.models.ov7670 import Ov7670Camera
+from sim.models.painter import paint
+from sim.models.rgb565 import as_received
+from sim.models.sensor import ModelSensor
+from sim.models.vga import VgaMonitor
+from tests.boards.board_bench import simulate_board
+from tests.boards.tb_ulx3s import Op
+from tests.shapes import marker_frame
+from tests.system.firmware_bench import found, frame_lines
+from tests.system.serial_line import levels, received
+
+COLUMNS, ROWS = 64, 48
+CLOCK_HZ, DIVISOR = 2_000_000, 4
+PERIOD_PS = 500_000
+#: Of PCLK, whose two clocks a pixel are faster than the board's clock; no multiple of it.
+PIXEL_PS = 403_170
+PATIENCE = 250_000
+CAMERA = Camera(80.0, 80.0, 31.5, 23.5)
+MODE = VideoMode(columns=72, column_front=8, column_sync=16, column_back=104,
+                 rows=50, row_front=1, row_sync=2, row_back=3)  # fmt: skip
+PICTURE_BITS = 10 * MODE.total_columns * MODE.total_rows
+
+
+def play(simulator, program, pictures):
+    image = build("sensor")
+    settings = {name: getattr(CAMERA, name) for name in ("fx", "fy", "cx", "cy")}
+    settings |= {"uart_divisor": DIVISOR, "tick_clocks": 20_000, "display_ticks": 0, "status_ticks": 0}
+    words = image.patched("settings", settings_bytes(image, **settings)).words
+    board = Ulx3s(
+        config=SensorConfig(width=COLUMNS, height=ROWS), program=words.tolist(), mode=MODE, clock_hz=CLOCK_HZ,
+        tick_us=50, start_clocks=200,
+    )  # fmt: skip
+    arrays = {
+        "program": [(*step, 0, 0)[:3] for step in program],
+        "period_ps": PERIOD_PS,
+        "pixel_ps": PIXEL_PS,
+        "divisor": DIVISOR,
+        "blank": 40,
+    }
+    for number, picture in enumerate(pictures):
+        arrays[f"picture.{number}"] = picture
+    return simulate_board(board, "ulx3s", simulator, arrays, cells=["ehxplll", "oddrx1f"], size=f"{COLUMNS}x{ROWS}")
+
+
+def lines(captured):
+    text = received(levels(captured["line"], PERIOD_PS // 1000, captured["end"]), DIVISOR).decode("ascii")
+    status, *rest, end = text.split("\r\n")
+    assert parse(status).name == "RPSTA" and end == ""
+    return rest
+
+
+def check_frame(told, number, picture):
+    """Sentences of a frame, equal to the reference's of what the model finds; only the time is taken from them."""
+    clocks = -(-int(parse(told[0]).fields[1].replace(".", "")) * CLOCK_HZ // 1_000_000)
+    assert told == frame_lines(number, clocks, found(picture), 0, camera=CAMERA, clock_hz=CLOCK_HZ)
+
+
+def shown(captured):
+    """Pictures that a monitor makes of the cable."""
+    channels = [captured["bits"] >> channel & 1 for channel in range(4)]
+    hsync, vsync, rgb, active = DviMonitor().receive(*channels)
+    return VgaMonitor(MODE).pictures(hsync, vsync, rgb, active)
+
+
+def expected(picture):
+    """What the display makes of what the model finds."""
+    (result,) = ModelSensor(COLUMNS, ROWS).run([picture])
+    corners = np.stack([result.corners["x"], result.corners["y"]], axis=1)
+    lists = {"boxes": result.blobs["box"], "corners": corners, "markers": result.markers["vertices"]}
+    return paint(COLUMNS, ROWS, MODE.columns, MODE.rows, **lists)
+
+
+def test_from_camera_to_monitor(simulator):
+    """With Verilator two pictures, the first before the camera is set up; with Icarus one, and nothing of the cable."""
+    sent = [
+        np.repeat(marker_frame(ROWS, COLUMNS, [place])[..., None], 3, axis=2)
+        for place in ((20, 9, 30, 20), (12, 7, 33, 100))
+    ]
+    pictures = [as_received(picture) for picture in sent]
+    is_long = simulator == "verilator"
+    program = [(Op.PLAY, 0)] * is_long + [(Op.CAMERA, PATIENCE), (Op.LOOK,), (Op.LINES, 1, PATIENCE), (Op.PLAY, 0)]
+    program += [(Op.LINES, 3, PATIENCE), (Op.LOOK,)]
+    if is_long:
+        program += [(Op.RECORD, int(2.2 * PICTURE_BITS)), (Op.PLAY, 1), (Op.LINES, 5, PATIENCE)]
+        program += [(Op.RECORD, int(2.2 * PICTURE_BITS))]
+    captured = play(simulator, program, sent)
+    camera = Ov7670Camera()
+    camera.bus.writes.extend(map(tuple, captured["writes"].tolist()))
+    assert camera.is_set_up
+    told = lines(captured)
+    check_frame(told[:2], 0, pictures[0])
+    before, after = captured["log"].tolist()
+    assert before & 0b101111 == 0b000001 and after & 0b101111 == 0b100001
+    if is_long:
+        check_frame(told[2:], 1, pictures[1])
+        half = len(captured["bits"]) // 2
+        for bits, picture in zip((captured["bits"][:half], captured["bits"][half:]), pictures, strict=True):
+            for got in shown({"bits": bits}):
+                assert (got == expected(picture)).all()
+
+
+def test_pins():
+    """Every port has balls and every ball one port; the constraints say so of each bit."""
+    balls = [name for pins in PINS.values() for name in pins.names]
+    assert len(balls) == len(set(balls))
+    text = constraints()
+    located = re.findall(r'LOCATE COMP "([^"]+)" SITE "([^"]+)";', text)
+    assert [ball for _, ball in located] == balls
+    assert sorted(re.findall(r'IOBUF PORT "([^"]+)" [^;]*IO_TYPE=\w+', text)) == sorted(bit for bit, _ in located)
+    board = Ulx3s(config=SensorConfig(width=64, height=48))
+    header = re.search(r"^module ulx3s\((.*?)\);", board_verilog(board, "ulx3s"), re.MULTILINE | re.DOTALL)[1]
+    assert sorted(re.findall(r"\w+", header)) == sorted(PINS)
+
+
+REPORT = {
+    "fmax": {
+        "$glbnet$clocks_system": {"achieved": 61.239, "constraint": 50.0},
+        "$glbnet$cam_pclk$TRELLIS_IO_IN": {"achieved": 24.9, "constraint": 25.0},
+    },
+    "utilization": {"TRELLIS_COMB": {"used": 30000, "available": 83640}, "EXTREFB": {"used": 0, "available": 2}},
+}
+
+
+def test_report():
+    result = bitstream.read_report(REPORT, 7)
+    assert result.clocks == {"clocks_system": (61.24, 50.0), "cam_pclk": (24.9, 25.0)}
+    assert result.cells == {"TRELLIS_COMB": (30000, 83640)} and result.missed == ["cam_pclk"]
+
+
+def test_timing_that_is_not_met(monkeypatch, tmp_path):
+    """All seeds are tried, and then there is no bitstream, but a message."""
+    tried = []
+    monkeypatch.setattr(bitstream, "_write_sources", lambda folder: None)
+    monkeypatch.setattr(bitstream.tools, "yosys", lambda *arguments: None)
+    monkeypatch.setattr(
+        bitstream, "_place", lambda folder, seed: tried.append(seed) or bitstream.read_report(REPORT, seed)
+    )
+    monkeypatch.setattr(bitstream.tools, "ecppack", lambda *arguments: pytest.fail("must not be called"))
+    with pytest.raises(
+        bitstream.TimingError, match=r"not met with seeds 1, 2, 3; at best: cam_pclk 24\.9 MHz instead of 25"
+    ):
+        bitstream.make(tmp_path)
+    assert tried == [1, 2, 3]
