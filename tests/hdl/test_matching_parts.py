@@ -201,7 +201,7 @@ def test_program(width, height):
     rows = program_of(width, height)
     assert all(0 <= value < 1 << FIELDS[name] for row in rows for name, value in row.items())
     assert 14 * (len(rows) + 6) < 7 * 640
-    assert rows[0] == {} and rows[-IN_FLIGHT:] == [{}] * IN_FLIGHT
+    assert rows[0] == {"zero_next": 1} and rows[-IN_FLIGHT:] == [{}] * IN_FLIGHT
     assert [row.get("report", 0) for row in rows[:-IN_FLIGHT]] == [0] * (len(rows) - IN_FLIGHT - 1) + [1]
 
 

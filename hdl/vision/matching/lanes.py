@@ -39,6 +39,9 @@ class LaneReading(wiring.Signature):
     place : Out
         The word of the component.
     lane : Out(Lane), clear : Out(1)
+        What is read. ``clear`` must come a clock after ``zero_next``, ``lane`` must not.
+    zero_next : Out(1)
+        In the next clock word 0 is meant.
     word : In(word_layout(width, height))
     area : In
         Area or area of the gaps.
@@ -55,6 +58,7 @@ class LaneReading(wiring.Signature):
                 "place": Out(bits_for(slots)),
                 "lane": Out(5),
                 "clear": Out(1),
+                "zero_next": Out(1),
                 "word": In(word_layout(width, height)),
                 "area": In(area),
                 "gap_sum": In(max(sums)),
@@ -113,8 +117,8 @@ class Lanes(wiring.Component):
         m = Module()
         component, reader = self.component, self.reader
         shows_result = reader.lane == Lane.RESULT
-        where = Signal.like(reader.place)
-        m.d.comb += where.eq(Mux(reader.clear, 0, reader.place))
+        where = Signal.like(reader.place, reset_less=True)  # of its own: it has a long way to all the memories
+        m.d.sync += where.eq(Mux(reader.zero_next, 0, reader.place))
 
         def lane(name, number, value, *, in_result=False):
             m.submodules[name] = words = memory.Memory(shape=value.shape(), depth=self._slots + 1, init=[])

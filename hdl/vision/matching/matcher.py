@@ -42,7 +42,7 @@ class Matcher(wiring.Component):
 
     Time: 310 clocks at most for a candidate, 1 for a mark. Marks keep their place in the order.
 
-    Memory: 306 rows of 51 bits, 32 points.
+    Memory: 306 rows of 52 bits, 32 points.
 
     Members
     -------
@@ -125,6 +125,7 @@ class Matcher(wiring.Component):
             vertex.eq(row.number[:2] + Mux(row.turned, turn, 0)),
             lanes.lane.eq(row.lane),
             lanes.clear.eq(row.clear),
+            lanes.zero_next.eq(row.zero_next),
             unfold.word.eq(lanes.word),
             *(getattr(unfold, n).eq(row[n]) for n in ("north", "weighs", "twice_y", "upside", "twice_x", "west")),
             *(getattr(divider, n).eq(row[n]) for n in ("load", "fresh", "load_divisor", "step")),

@@ -26,7 +26,7 @@ IN_FLIGHT = 2
 
 #: Field -> bits; 0 where nothing is said, and :data:`Lane.NONE` of ``lane``.
 FIELDS = {
-    **{"lane": 5, "clear": 1},
+    **{"lane": 5, "clear": 1, "zero_next": 1},
     **dict.fromkeys(("north", "weighs", "twice_y", "upside", "twice_x", "west"), 1),
     **{"number": 5, "from_low": 1, "from_high": 1, "turned": 1, "outside": 1, "put": 5},
     **dict.fromkeys(("put_x", "put_y", "line", "pair", "keep", "search", "first"), 1),
@@ -116,17 +116,22 @@ class _Rows:
         self.read(start)
         self.read(end, line=True)
 
+    def clear(self, row):
+        """Nothing of the candidate is shown after this row."""
+        self.set(row - 1, zero_next=1)
+        self.set(row, clear=1)
+
     def fetch(self, row, lane):
         """Field ``lane`` of the candidate is shown in the next row alone."""
         self.set(row, lane=lane)
-        self.set(row + 1, clear=1)
+        self.clear(row + 1)
         return row + 1
 
 
 def program(dividend_bits):
     """Rows, each a dict of fields."""
     rows = _Rows()
-    rows.set(1, clear=1)
+    rows.clear(1)
     rows.set(2, load=1, fresh=1)  # nothing of the candidate before is left
     best = _quadrilateral(rows, dividend_bits)
     after = _areas_of_triangles(rows, best)
