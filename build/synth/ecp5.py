@@ -8,9 +8,28 @@ import shutil
 from build.synth.harness import ports_of, shell
 from build.tools import nextpnr_ecp5, yosys
 
-__all__ = ["place_and_route"]
+__all__ = ["PART", "ROUTER", "netlist", "place_and_route"]
 
 _HERE = pathlib.Path(__file__).parent
+
+#: LFE5U-85F-6BG381C, that of the ULX3S.
+PART = ("--85k", "--package", "CABGA381", "--speed", "6")
+
+#: nextpnr's other router takes ten times as long for designs of this size.
+ROUTER = ("--router", "router2")
+
+
+def netlist(top, files, folder):
+    """Map the Verilog ``files`` in ``folder`` to the chip's cells: ``TOP.json``."""
+    shutil.copy(_HERE / "order_map.v", folder)
+    passes = (
+        f"read_verilog {' '.join(files)}",
+        f"hierarchy -check -top {top}",
+        "proc",
+        "techmap -map order_map.v",
+        f"synth_ecp5 -top {top} -json {top}.json",
+    )
+    yosys("\n".join(passes) + "\n", folder)
 
 
 def place_and_route(top, sources, folder, *, target_mhz, seed=1):
@@ -44,20 +63,12 @@ def place_and_route(top, sources, folder, *, target_mhz, seed=1):
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in sources.items():
         (folder / name).write_text(text)
-    shutil.copy(_HERE / "order_map.v", folder)
     (folder / "shell.v").write_text(shell(top, ports_of(top, sources, folder)))
-    script = (
-        f"read_verilog {' '.join(sources)} shell.v",
-        "hierarchy -check -top shell",
-        "proc",
-        "techmap -map order_map.v",
-        "synth_ecp5 -top shell -json shell.json",
-    )
-    yosys("\n".join(script) + "\n", folder)
+    netlist("shell", [*sources, "shell.v"], folder)
     nextpnr_ecp5(
         [
-            *("--85k", "--package", "CABGA381", "--speed", "6", "--json", "shell.json", "--report", "report.json"),
-            *("--freq", target_mhz, "--seed", seed, "--timing-allow-fail", "--lpf-allow-unconstrained"),
+            *(*PART, *ROUTER, "--json", "shell.json", "--report", "report.json", "--freq", target_mhz, "--seed", seed),
+            *("--timing-allow-fail", "--lpf-allow-unconstrained"),
         ],
         folder,
     )

@@ -9,6 +9,7 @@ import json
 import pathlib
 
 from build import tools
+from build.synth.ecp5 import PART, ROUTER, netlist
 from firmware.toolchain.images import build as build_program
 from hdl.boards.emit import board_verilog
 from hdl.boards.ulx3s.pins import constraints
@@ -20,8 +21,6 @@ __all__ = ["DEVICE", "NAME", "SEEDS", "Result", "TimingError", "make"]
 NAME = "rasterpose_ulx3s"
 DEVICE = "LFE5U-85F-6BG381C"
 SEEDS = (1, 2, 3)
-
-_PART = ("--85k", "--package", "CABGA381", "--speed", "6")
 
 
 class TimingError(Exception):
@@ -88,7 +87,8 @@ def _write_sources(folder):
 def _place(folder, seed):
     tools.nextpnr_ecp5(
         [
-            *_PART,
+            *PART,
+            *ROUTER,
             *("--json", f"{NAME}.json", "--lpf", f"{NAME}.lpf", "--textcfg", f"{NAME}.config"),
             *("--report", "nextpnr.json", "--seed", seed, "--timing-allow-fail"),
         ],
@@ -114,7 +114,7 @@ def make(folder, step=lambda text: None):
     step("writing Verilog and firmware")
     _write_sources(folder)
     step("Yosys: synthesis")
-    tools.yosys(f"read_verilog {NAME}.v VexRiscv.v\nsynth_ecp5 -top {NAME} -json {NAME}.json\n", folder)
+    netlist(NAME, [f"{NAME}.v", "VexRiscv.v"], folder)
     tried = []
     for seed in SEEDS:
         step(f"nextpnr: place and route, seed {seed}")
