@@ -153,6 +153,7 @@ async def play(dut):
         await RisingEdge(dut.xclkin)
         edges.append(round(get_sim_time("ns")))
     await bench.play()
+    await bench.clocks(2 * int(plan["divisor"]))  # The stop bit of the last byte.
     np.savez(
         folder / "captured.npz",
         log=np.array(bench.log, np.int64),

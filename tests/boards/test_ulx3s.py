@@ -149,7 +149,7 @@ def test_timing_that_is_not_met(monkeypatch, tmp_path):
     """All seeds are tried, and then there is no bitstream, but a message."""
     tried = []
     monkeypatch.setattr(bitstream, "_write_sources", lambda folder: None)
-    monkeypatch.setattr(bitstream.tools, "yosys", lambda *arguments: None)
+    monkeypatch.setattr(bitstream, "netlist", lambda *arguments: None)
     monkeypatch.setattr(
         bitstream, "_place", lambda folder, seed: tried.append(seed) or bitstream.read_report(REPORT, seed)
     )
