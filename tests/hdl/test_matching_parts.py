@@ -217,7 +217,9 @@ def test_waiting(depth):
         for clock in range(4200):
             busy = random.random() < (0.9 if clock % 1000 < 500 else 0.2)
             comes = (
-                [ItemKind.ITEM, ItemKind.END, ItemKind.ABORT][random.choice(3, p=[0.985, 0.01, 0.005])] if busy else None
+                [ItemKind.ITEM, ItemKind.END, ItemKind.ABORT][random.choice(3, p=[0.985, 0.01, 0.005])]
+                if busy
+                else None
             )
             place = ctx.get(dut.slot)
             due = verdicts.pop(0)

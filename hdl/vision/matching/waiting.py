@@ -108,9 +108,9 @@ class Waiting(wiring.Component):
 
         m.submodules.order = order = SyncFIFOBuffered(width=entry.size, depth=2 * self._depth)
         word, oldest = Signal(entry), Signal(entry)
-        waiting = Signal(range(half + 1))
+        queued = Signal(range(half + 1))
         joins, marks, voids, returned = Signal(), Signal(), Signal(), Signal()
-        is_full = waiting == half
+        is_full = queued == half
         m.d.comb += [
             joins.eq(self.wanted & ~is_full),
             self.dropped.eq(self.wanted & is_full),
@@ -139,7 +139,7 @@ class Waiting(wiring.Component):
             m.d.sync += tail.eq(after(tail))
         leaves = self.taken & (self.kind == ItemKind.ITEM)
         with m.If(joins & ~leaves):
-            m.d.sync += waiting.eq(waiting + 1)
+            m.d.sync += queued.eq(queued + 1)
         with m.Elif(leaves & ~joins):
-            m.d.sync += waiting.eq(waiting - 1)
+            m.d.sync += queued.eq(queued - 1)
         return m
