@@ -20,11 +20,11 @@ class Candidates(wiring.Component):
 
     ::
 
-        clock      0                   1                 2
-        i      component -> filled, gap, has hole -> comparisons -> wanted
-        kept                box, spans             ->             -> rejected, mark
+        clock      0                   1                 2             3
+        i      component -> filled, gap, has hole -> comparisons -> wanted,
+        kept                box, spans             ->            -> rejected, mark
 
-    Throughput: a beat a clock. Latency: 2 clocks from ``i``.
+    Throughput: a beat a clock. Latency: 3 clocks from ``i``.
 
     Members
     -------
@@ -104,9 +104,12 @@ class Candidates(wiring.Component):
             test(f"large_{axis}", ~lack[-1])
         test("gap_large", (gap << 4) >= filled)
         test("gap_small", (gap << 3) <= filled)
-        m.d.sync += [judged.eq(item), self.mark.eq(ItemKind.ITEM)]
+        mark = Signal(ItemKind)
+        m.d.sync += [judged.eq(item), mark.eq(ItemKind.ITEM)]
         with m.If(self.kept.valid):
-            m.d.sync += self.mark.eq(box.kind)
+            m.d.sync += mark.eq(box.kind)
+
+        # Clock 3.
         all_pass = Cat(tests).all()
-        m.d.comb += [self.wanted.eq(judged & all_pass), self.rejected.eq(judged & ~all_pass)]
+        m.d.sync += [self.wanted.eq(judged & all_pass), self.rejected.eq(judged & ~all_pass), self.mark.eq(mark)]
         return m

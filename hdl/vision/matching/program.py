@@ -19,7 +19,7 @@ A, B, C, D, B0, D0, HH, HL, ZERO, ONE, OTHER = range(POINTS, POINTS + 11)
 
 #: What they are at first. Zero and the last two never change: the larger of |x| and |y|, six times, is the sum of the
 #: absolute products with (3, 3) and (-3, 3).
-INITIAL_POINTS = [(0, 0)] * (ONE - 0) + [(3, 3), (-3, 3)] + [(0, 0)] * (32 - OTHER - 1)
+INITIAL_POINTS = [(0, 0)] * ONE + [(3, 3), (-3, 3)] + [(0, 0)] * (32 - OTHER - 1)
 
 #: Rows that are still carried out after the one that ends the program.
 IN_FLIGHT = 2
@@ -133,18 +133,19 @@ def program(dividend_bits):
     rows = _Rows()
     rows.clear(1)
     rows.set(2, load=1, fresh=1)  # nothing of the candidate before is left
-    best = _quadrilateral(rows, dividend_bits)
-    after = _areas_of_triangles(rows, best)
+    x_known = _quadrilateral(rows, dividend_bits)
+    _areas_of_triangles(rows)
     _hull(rows)
-    hole = _hole_y(rows, dividend_bits, after)
-    _filling(rows, hole)
+    _filling(rows, _hole_y(rows, dividend_bits, x_known))
     _offsets(rows)
     last = max(rows.rows) + IN_FLIGHT
     return [rows.rows.get(row, {}) for row in range(last + 1)]
 
 
 def _quadrilateral(rows, dividend_bits):
-    """A and C are the opposite extremes farthest apart, B and D the farthest from AC; A, C from BD; B, D from AC."""
+    """Returns the row in which the x of the hole's centre is there, and done with.
+
+    A and C are the opposite extremes farthest apart, B and D the farthest from AC; A, C from BD; B, D from AC."""
     order = [k + half for k in range(POINTS // 2) for half in (0, POINTS // 2)]
     for index, k in enumerate(order):
         row = rows.fetch(2 + 2 * index, k) - 1
@@ -205,7 +206,7 @@ def _fraction(rows, row):
     return row + 4
 
 
-def _areas_of_triangles(rows, y_from):
+def _areas_of_triangles(rows):
     """a is above 0, and of each vertex: 8 times what it adds, minus 3 a, is 0 or more."""
     rows.add(+1, 0, best="high", put=D, anew=True)
     rows.set(rows.add(-1, 0, best="low", put=B, less=True), reject_negative=1)
@@ -230,7 +231,6 @@ def _areas_of_triangles(rows, y_from):
         rows.line(A, C)
         _add_area(rows, -1, double=True)
         rows.set(_add_area(rows, -1, double=True), reject_negative=1)
-    return y_from
 
 
 def _add_area(rows, sign, *, double=False, less=False):

@@ -8,10 +8,10 @@ from amaranth.utils import bits_for
 
 from hdl.pixels import ItemKind
 
-__all__ = ["Waiting", "slots"]
+__all__ = ["VERDICT", "Waiting", "slots"]
 
 #: Clocks from a component to the verdict on it.
-VERDICT = 2
+VERDICT = 3
 
 
 def slots(depth):
@@ -22,13 +22,13 @@ def slots(depth):
 class Waiting(wiring.Component):
     """Hands out places, takes them back, and keeps the order.
 
-    Every component is given a place, because the verdict on it comes two clocks later: then a candidate keeps its
+    Every component is given a place, because the verdict on it comes three clocks later: then a candidate keeps its
     place and joins the queue, and the place of any other is free again. A candidate that finds ``depth / 2`` others is
     lost (``dropped``).
 
     ::
 
-        free places (a ring) -> slot -> 2 clocks -> queue: kind, slot -> the matcher
+        free places (a ring) -> slot -> 3 clocks -> queue: kind, slot -> the matcher
                ^                           | rejected, dropped             | taken
                '---------------------------+-------------------------------'
 
@@ -49,7 +49,7 @@ class Waiting(wiring.Component):
         One comes: it goes to ``slot``.
     slot : Out
     wanted, rejected : In(1), mark : In(ItemKind)
-        As :class:`~hdl.vision.matching.candidates.Candidates` says two clocks later.
+        As :class:`~hdl.vision.matching.candidates.Candidates` says three clocks later.
     valid : Out(1), kind : Out(ItemKind), place : Out
         What is to be worked off next.
     take : In(1), taken : Out(1)
@@ -102,14 +102,15 @@ class Waiting(wiring.Component):
             m.d.sync += [head.eq(head_next), self.slot.eq(Mux(first_round, head, read.data))]
             with m.If(head == count):
                 m.d.sync += first_round.eq(0)
-        given = [Signal.like(self.slot, name=f"slot{k}", init=0, reset_less=True) for k in (1, 2)]
-        m.d.sync += [given[0].eq(self.slot), given[1].eq(given[0])]
+        given = [Signal.like(self.slot, name=f"slot{k}", init=0, reset_less=True) for k in range(VERDICT)]
+        for stage, previous in zip(given, [self.slot, *given], strict=False):
+            m.d.sync += stage.eq(previous)
 
         m.submodules.order = order = SyncFIFOBuffered(width=entry.size, depth=2 * self._depth)
         word, oldest = Signal(entry), Signal(entry)
-        waiting = Signal(range(half + 1))
+        queued = Signal(range(half + 1))
         joins, marks, voids, returned = Signal(), Signal(), Signal(), Signal()
-        is_full = waiting == half
+        is_full = queued == half
         m.d.comb += [
             joins.eq(self.wanted & ~is_full),
             self.dropped.eq(self.wanted & is_full),
@@ -118,7 +119,7 @@ class Waiting(wiring.Component):
             ),
             self.overflow.eq(marks & ~order.w_rdy),
             word.kind.eq(self.mark),
-            word.slot.eq(given[1]),
+            word.slot.eq(given[-1]),
             order.w_data.eq(word),
             order.w_en.eq(joins | marks),
             oldest.eq(order.r_data),
@@ -129,7 +130,7 @@ class Waiting(wiring.Component):
             self.taken.eq(self.take & (~returned | (self.kind != ItemKind.ITEM))),
             order.r_en.eq(self.taken),
             write.addr.eq(tail),
-            write.data.eq(Mux(returned, given[1], self.place)),
+            write.data.eq(Mux(returned, given[-1], self.place)),
             write.en.eq(returned | self.taken & (self.kind == ItemKind.ITEM)),
         ]
         with m.If(joins | marks):
@@ -138,7 +139,7 @@ class Waiting(wiring.Component):
             m.d.sync += tail.eq(after(tail))
         leaves = self.taken & (self.kind == ItemKind.ITEM)
         with m.If(joins & ~leaves):
-            m.d.sync += waiting.eq(waiting + 1)
+            m.d.sync += queued.eq(queued + 1)
         with m.Elif(leaves & ~joins):
-            m.d.sync += waiting.eq(waiting - 1)
+            m.d.sync += queued.eq(queued - 1)
         return m
