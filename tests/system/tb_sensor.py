@@ -102,7 +102,7 @@ class _Viewer:
 
     def step(self):
         """Before the inputs of a clock change: take what was read, and ask anew."""
-        if int(self._free.value):
+        if self._asked and int(self._free.value):
             for number, (index, count) in enumerate(self._asked):
                 if index < count:
                     self.seen.append((number, index, count, f"{int(self._lists[number][2].value):x}"))
