@@ -12,6 +12,10 @@ import sys
 __all__ = ["ToolError", "ecppack", "nextpnr_ecp5", "version", "yosys"]
 
 
+#: Seconds after which a tool is stopped: a router that finds no way would go on for ever.
+PATIENCE = 1800
+
+
 class ToolError(Exception):
     """A tool failed: one line that says which and why."""
 
@@ -29,7 +33,12 @@ def _run(tool, entry, arguments, folder, log):
         *map(str, arguments),
     ]
     with pathlib.Path(folder, log).open("w") as file:
-        status = subprocess.run(command, cwd=folder, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
+        try:
+            status = subprocess.run(
+                command, cwd=folder, stdout=file, stderr=subprocess.STDOUT, check=False, timeout=PATIENCE
+            ).returncode
+        except subprocess.TimeoutExpired:
+            raise ToolError(f"{entry[4:]} was stopped after {PATIENCE} s, see {folder}/{log}") from None
     if status:
         said = [line for line in pathlib.Path(folder, log).read_text(errors="replace").splitlines() if "ERROR" in line]
         raise ToolError(f"{entry[4:]} failed, see {folder}/{log}: {said[0] if said else f'status {status}'}")
