@@ -23,11 +23,13 @@ def netlist(top, files, folder):
     """Map the Verilog ``files`` in ``folder`` to the chip's cells: ``TOP.json``."""
     shutil.copy(_HERE / "order_map.v", folder)
     passes = (
+        # Boards instantiate the vendor's cells, so these are read before and not by synth_ecp5.
+        "read_verilog -lib -specify +/ecp5/cells_sim.v +/ecp5/cells_bb.v",
         f"read_verilog {' '.join(files)}",
         f"hierarchy -check -top {top}",
         "proc",
         "techmap -map order_map.v",
-        f"synth_ecp5 -top {top} -json {top}.json",
+        f"synth_ecp5 -top {top} -run coarse: -json {top}.json",
     )
     yosys("\n".join(passes) + "\n", folder)
 

@@ -7,7 +7,7 @@ Contract: a vertex is a square of 5 x 5 pixels, one mark in each of its rows. Th
 
     V1 V2 V3 V4 turn round: the first is looked at, the edge to the second is marked, four times
 
-Numbers: for each marker a clock, two for each of its four vertices, and 25 for each edge that the row meets (640 x
+Numbers: for each marker a clock, two for each of its four vertices, and 24 for each edge that the row meets (640 x
 480), of which there are two in most rows. No memory.
 """
 

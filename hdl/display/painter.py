@@ -13,9 +13,9 @@ is the old one above and the new one below.
     view.blobs ---> reader -> box marks ------+-> line being painted
     view.corners -> reader -> corner marks --'   line before -> pixels -> o
 
-Numbers: at 640 x 480 a row takes 9 clocks a marker, 25 for each of its edges in the row, 1 or 2 a box and 1 a corner
+Numbers: at 640 x 480 a row takes 9 clocks a marker, 24 for each of its edges in the row, 1 or 2 a box and 1 a corner
 near the row, with a few between lists, and one for each read on the bus. At 50 MHz a row of VGA has 1,600 clocks: 256
-boxes and 10 markers side by side, all in one row, take 1,135. Memory: see :class:`~hdl.display.line.Line`.
+boxes and 10 markers side by side, all in one row, take 1,090. Memory: see :class:`~hdl.display.line.Line`.
 
 Model: :func:`sim.models.painter.paint`.
 """
