@@ -15,7 +15,7 @@ pixel that can be a corner comes at least 48 steps after the frame's first.
          3  early pixels        8..13  the longest arc          23  position
          6  circle              6..23  score
 
-Numbers: ``STEPS`` + 1 steps. Memory: the window's rows, and some 600 bits in place of registers.
+Numbers: ``STEPS`` + 1 steps. Memory: the window's rows, and some 2,500 bits in place of registers.
 
 Model: :func:`sim.models.fast.fast` is bit-exact.
 """

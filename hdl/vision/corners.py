@@ -10,7 +10,7 @@ less than 7 pixels wide or high have no corners. All settings are taken with the
 Numbers: one pixel a clock. The corner (x, y) comes out 3 clocks after the 22nd pixel behind (x + 4, y + 4), or 25
 clocks after that one if the frame ends before; in the last row that can have corners, 4 rows above the frame's end,
 it comes 27 + x clocks after the frame's last pixel; ``END`` comes W + 24 clocks after it, or 25 if the frame has
-fewer than 7 columns or rows. Memory at 640 x 480: 6 rows of grey and one of bests, 40,320 bits, and 2,380 in place of
+fewer than 7 columns or rows. Memory at 640 x 480: 6 rows of grey and one of bests, 40,320 bits, and 2,524 in place of
 registers.
 
 Models: :func:`sim.models.fast.find_corners` is bit-exact.

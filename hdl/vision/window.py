@@ -17,8 +17,8 @@ unused contents outlives a frame, and its width is whatever ``eol`` says.
 
 Numbers: one pixel a step. One memory of ``width`` x 48 bits with one read and one write port; a column is written
 two steps after it was read. Frames less than 3 pixels wide read it back too early, which does not matter: they
-have no centre. Seven columns of levels would be 400 registers; most are kept in a memory three steps deep, so that
-17 levels of 8 bits remain.
+have no centre. Seven columns of levels would be 400 registers; most are kept in memories two and three
+steps deep, so that nine levels of 8 bits remain.
 """
 
 from amaranth import Cat, Module, Mux, Signal, unsigned

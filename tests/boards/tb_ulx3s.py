@@ -120,6 +120,7 @@ async def play(dut):
     for task in (bench.bus(), bench.listen(), bench.count_lines()):
         cocotb.start_soon(task)
     await bench.play()
+    await bench.clocks(2 * int(plan["divisor"]))  # The stop bit of the last byte.
     np.savez(
         folder / "captured.npz",
         log=np.array(bench.log, np.int64),

@@ -82,7 +82,7 @@ def test_words(engine):
 
 
 def test_emitted_verilog(simulator):
-    """With a reset in the middle, after which the sums begin anew with the next blanking."""
+    """With a blanking in the middle, in which the sums begin anew."""
     given = pixels(1200, seed=2)
     given["active"][595:602] = 0
     stimulus = {"i": pack(PIXEL, **given)}
