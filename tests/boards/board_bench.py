@@ -1,12 +1,16 @@
-"""A board's emitted top with the models of its vendor's cells, in a simulator."""
+"""A board's emitted top with the models of its vendor's cells, in a simulator, and what it told."""
 
 import pathlib
 
+from firmware.reference.sentence import parse
 from hdl.boards.emit import board_verilog
 from hdl.system.cpu import cpu_verilog
+from sim.results import Settings
 from tests.hdl import harness
+from tests.system.firmware_bench import found, frame_lines
+from tests.system.serial_line import levels, received
 
-__all__ = ["simulate_board"]
+__all__ = ["check_frame", "simulate_board", "told_lines"]
 
 CELLS = pathlib.Path(__file__).parents[2] / "sim" / "boards"
 
@@ -16,3 +20,21 @@ def simulate_board(board, name, simulator, arrays, *, cells, size):
     texts = [(CELLS / f"{cell}.v").read_text() for cell in (*cells, f"{name}_bench")]
     verilog = "\n".join([board_verilog(board, name), cpu_verilog(), *texts])
     return harness.simulate(f"{name}_bench", verilog, simulator, arrays, size=size, testbench=f"tests.boards.tb_{name}")
+
+
+def told_lines(captured, period_ns, divisor):
+    """Lines that went over the serial line, without the status that the program begins with."""
+    text = received(levels(captured["line"], period_ns, captured["end"]), divisor).decode("ascii")
+    status, *rest, end = text.split("\r\n")
+    assert parse(status).name == "RPSTA" and end == ""
+    return rest
+
+
+def check_frame(told, number, picture, *, camera, clock_hz, settings=Settings()):  # noqa: B008 - frozen
+    """Sentences of a frame, equal to the reference's of what the model finds; only the time is taken from them.
+
+    Returns that time in clocks.
+    """
+    clocks = -(-int(parse(told[0]).fields[1].replace(".", "")) * clock_hz // 1_000_000)
+    assert told == frame_lines(number, clocks, found(picture, settings), 0, camera=camera, clock_hz=clock_hz)
+    return clocks

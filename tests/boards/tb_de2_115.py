@@ -14,6 +14,7 @@ from cocotb.utils import get_sim_time
 
 from sim.models.d5m import D5mCamera
 from sim.models.lcd import Hd44780
+from tests.boards.bench import BoardBench
 from tests.hdl.tb_stream import load_plan
 
 _LCD = ("rs", "rw", "e")
@@ -32,52 +33,20 @@ class Op(enum.IntEnum):
     LOOK = 7  #: log the lights, the digits and how often the camera was written to
 
 
-class _Bench:
+class _Bench(BoardBench):
     def __init__(self, dut, plan):
-        self.dut, self.plan = dut, plan
-        self.period, self.pixel_ps = int(plan["period_ns"]), int(plan["pixel_ps"])
-        self.falling = FallingEdge(dut.clock_50)
-        self.camera, self.panel = D5mCamera(blank=int(plan["blank"])), Hd44780()
-        self.line, self.log, self.lines = [(0, 1)], [], 0
+        period_ns = int(plan["period_ns"])
+        camera = D5mCamera(blank=int(plan["blank"]))
+        super().__init__(dut, camera, period_ps=1000 * period_ns, divisor=int(plan["divisor"]))
+        self.plan, self.period, self.pixel_ps = plan, period_ns, int(plan["pixel_ps"])
+        self.falling, self.panel = FallingEdge(dut.clock_50), Hd44780()
 
     async def clocks(self, count):
+        """To a falling edge."""
         if count > 1:
             await Timer(self.period * (count - 1) + self.period // 2, unit="ns")
         if count:
             await self.falling
-
-    async def until(self, reached, patience):
-        for _ in range(0, patience, 50):
-            if reached():
-                return
-            await self.clocks(50)
-
-    async def bus(self):
-        """The I2C bus, whose lines the simulator resolves."""
-        dut, slave = self.dut, self.camera.bus
-        while True:
-            slave.lines(round(get_sim_time("ns")), int(dut.scl.value), int(dut.sda.value))
-            dut.sda_pulled.value = int(slave.pulls_sda)
-            await First(dut.scl.value_change, dut.sda.value_change)
-            await self.falling
-
-    async def listen(self):
-        """The serial line: (ns, level) of its changes."""
-        while True:
-            await self.dut.txd.value_change
-            self.line.append((round(get_sim_time("ns")), int(self.dut.txd.value)))
-
-    async def count_lines(self):
-        """Ends of lines, from bytes that are sampled in the middle of their bits."""
-        bit, txd = self.period * int(self.plan["divisor"]), self.dut.txd
-        while True:
-            await FallingEdge(txd)
-            await Timer(bit + bit // 2, unit="ns")
-            byte = 0
-            for k in range(8):
-                byte |= int(txd.value) << k
-                await Timer(bit, unit="ns")
-            self.lines += byte == ord("\n")
 
     async def show(self):
         """Hand the pins to the display; only while e is high does it matter what time it is."""
@@ -153,7 +122,7 @@ async def play(dut):
         await RisingEdge(dut.xclkin)
         edges.append(round(get_sim_time("ns")))
     await bench.play()
-    await bench.clocks(2 * int(plan["divisor"]))  # The stop bit of the last byte.
+    await bench.finish()
     np.savez(
         folder / "captured.npz",
         log=np.array(bench.log, np.int64),

@@ -9,10 +9,11 @@ import enum
 import cocotb
 import numpy as np
 from cocotb.clock import Clock
-from cocotb.triggers import FallingEdge, First, RisingEdge, Timer
+from cocotb.triggers import RisingEdge, Timer
 from cocotb.utils import get_sim_time
 
 from sim.models.ov7670 import Ov7670Camera
+from tests.boards.bench import BoardBench
 from tests.hdl.tb_stream import load_plan
 
 
@@ -27,48 +28,11 @@ class Op(enum.IntEnum):
     RESET = 5  #: the button, for so many clocks
 
 
-class _Bench:
+class _Bench(BoardBench):
     def __init__(self, dut, plan):
-        self.dut, self.plan = dut, plan
-        self.period, self.pixel_ps = int(plan["period_ps"]), int(plan["pixel_ps"])
-        self.camera = Ov7670Camera(blank=int(plan["blank"]))
-        self.line, self.log, self.lines, self.bits = [(0, 1)], [], 0, []
-
-    async def clocks(self, count):
-        await Timer(self.period * count, unit="ps")
-
-    async def until(self, reached, patience):
-        for _ in range(0, patience, 50):
-            if reached():
-                return
-            await self.clocks(50)
-
-    async def bus(self):
-        """The two-wire bus, whose lines the simulator resolves."""
-        dut, slave = self.dut, self.camera.bus
-        while True:
-            slave.lines(round(get_sim_time("ns")), int(dut.scl.value), int(dut.sda.value))
-            dut.sda_pulled.value = int(slave.pulls_sda)
-            await First(dut.scl.value_change, dut.sda.value_change)
-            await self.clocks(1)
-
-    async def listen(self):
-        """The serial line: (ns, level) of its changes, and its ends of lines."""
-        txd = self.dut.txd
-        while True:
-            await txd.value_change
-            self.line.append((round(get_sim_time("ns")), int(txd.value)))
-
-    async def count_lines(self):
-        bit, txd = self.period * int(self.plan["divisor"]), self.dut.txd
-        while True:
-            await FallingEdge(txd)
-            await Timer(bit + bit // 2, unit="ps")
-            byte = 0
-            for k in range(8):
-                byte |= int(txd.value) << k
-                await Timer(bit, unit="ps")
-            self.lines += byte == ord("\n")
+        camera = Ov7670Camera(blank=int(plan["blank"]))
+        super().__init__(dut, camera, period_ps=int(plan["period_ps"]), divisor=int(plan["divisor"]))
+        self.plan, self.pixel_ps, self.bits = plan, int(plan["pixel_ps"]), []
 
     async def play_picture(self, number):
         dut, half = self.dut, Timer(self.pixel_ps // 2, unit="ps")
@@ -82,9 +46,9 @@ class _Bench:
 
     async def record(self, count):
         """Bits of the cable, each in its middle."""
-        gpdi, bit = self.dut.gpdi, Timer(self.period // 5, unit="ps")
+        gpdi, bit = self.dut.gpdi, Timer(self.period_ps // 5, unit="ps")
         await RisingEdge(self.dut.xclk)  # In phase with the cable.
-        await Timer(self.period // 10, unit="ps")
+        await Timer(self.period_ps // 10, unit="ps")
         for _ in range(count):
             self.bits.append(int(gpdi.value))
             await bit
@@ -115,17 +79,17 @@ async def play(dut):
     for name in ("fire", "data", "href", "vsync", "pclk", "scl_pulled", "sda_pulled"):
         getattr(dut, name).value = 0
     dut.reset_n.value = 1
-    Clock(dut.oscillator, bench.period // 10, unit="ps").start(start_high=False)
+    Clock(dut.oscillator, bench.period_ps // 10, unit="ps").start(start_high=False)
     await bench.clocks(100)
     for task in (bench.bus(), bench.listen(), bench.count_lines()):
         cocotb.start_soon(task)
     await bench.play()
-    await bench.clocks(2 * int(plan["divisor"]))  # The stop bit of the last byte.
+    await bench.finish()
     np.savez(
         folder / "captured.npz",
         log=np.array(bench.log, np.int64),
         line=np.array(bench.line, np.int64),
-        end=round(get_sim_time("ns")) * 1000 // bench.period,
+        end=round(get_sim_time("ns")) * 1000 // bench.period_ps,
         bits=np.array(bench.bits, np.uint8),
         writes=np.array(bench.camera.bus.writes, np.int64).reshape(-1, 3),
     )

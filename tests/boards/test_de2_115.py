@@ -13,12 +13,11 @@ from hdl.config import SensorConfig
 from sim.models.d5m import D5mCamera
 from sim.results import Settings
 from sim.scene import random_marker_scene, render
-from tests.boards.board_bench import simulate_board
+from tests.boards.board_bench import check_frame, simulate_board, told_lines
 from tests.boards.tb_de2_115 import Op
 from tests.hdl import harness
 from tests.shapes import marker_frame
-from tests.system.firmware_bench import found, frame_lines
-from tests.system.serial_line import levels, received
+from tests.system.firmware_bench import found
 
 CLOCK_HZ, DIVISOR = 2_000_000, 4
 PERIOD_NS = 10**9 // CLOCK_HZ
@@ -54,21 +53,6 @@ def play(simulator, program, pictures, camera, **firmware):
     return simulate_board(board, "de2_115", simulator, arrays, cells=["altpll"], size=f"{columns}x{rows}")
 
 
-def lines(captured):
-    text = received(levels(captured["line"], PERIOD_NS, captured["end"]), DIVISOR).decode("ascii")
-    status, *rest, end = text.split("\r\n")
-    assert parse(status).name == "RPSTA" and end == ""
-    return rest
-
-
-def check_frame(told, number, picture, camera):
-    """Sentences of a frame, equal to the reference's of what the model finds; only the time is taken from them."""
-    time = parse(told[0]).fields[1]
-    clocks = -(-int(time.replace(".", "")) * CLOCK_HZ // 1_000_000)
-    assert told == frame_lines(number, clocks, found(picture, SETTINGS), 0, camera=camera, clock_hz=CLOCK_HZ)
-    return clocks
-
-
 def decimal(segments, places):
     """The number that digits show; places from the lowest."""
     shapes = {0x3F: 0, 0x06: 1, 0x5B: 2, 0x4F: 3, 0x66: 4, 0x6D: 5, 0x7D: 6, 0x07: 7, 0x7F: 8, 0x6F: 9}
@@ -98,9 +82,9 @@ def test_from_camera_to_serial_line():
     captured = play("verilator", program, [frame.image for frame in frames], camera)
     check_camera(captured)
     assert all((found(frame.image, SETTINGS) != found(frame.image)).any() for frame in frames)
-    told = lines(captured)
-    first = check_frame(told[:2], 0, frames[0].image, camera)
-    second = check_frame(told[2:], 1, frames[1].image, camera)
+    told = told_lines(captured, PERIOD_NS, DIVISOR)
+    first = check_frame(told[:2], 0, frames[0].image, camera=camera, clock_hz=CLOCK_HZ, settings=SETTINGS)
+    second = check_frame(told[2:], 1, frames[1].image, camera=camera, clock_hz=CLOCK_HZ, settings=SETTINGS)
     assert second - first > 2 * 160 * 2 * 120 * PIXEL_PS / 1000 / PERIOD_NS
     for frame, sentence in zip(frames, (told[1], told[3]), strict=True):
         (truth,) = frame.truth
@@ -130,7 +114,9 @@ def test_short_on_icarus():
     ]
     captured = play("icarus", program, [picture], camera, display_ticks=0)
     check_camera(captured)
-    check_frame(lines(captured), 0, picture, camera)
+    check_frame(
+        told_lines(captured, PERIOD_NS, DIVISOR), 0, picture, camera=camera, clock_hz=CLOCK_HZ, settings=SETTINGS
+    )
 
 
 @pytest.mark.parametrize("arguments, phrase", [({"clock_hz": 1_500_000}, "clock_hz must be")])

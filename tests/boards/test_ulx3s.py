@@ -8,7 +8,6 @@ import pytest
 from build.ulx3s import bitstream
 from firmware.layout import settings_bytes
 from firmware.reference import Camera
-from firmware.reference.sentence import parse
 from firmware.toolchain.images import build
 from hdl.boards.emit import board_verilog
 from hdl.boards.ulx3s.pins import PINS, constraints
@@ -21,11 +20,9 @@ from sim.models.painter import paint
 from sim.models.rgb565 import as_received
 from sim.models.sensor import ModelSensor
 from sim.models.vga import VgaMonitor
-from tests.boards.board_bench import simulate_board
+from tests.boards.board_bench import check_frame, simulate_board, told_lines
 from tests.boards.tb_ulx3s import Op
 from tests.shapes import marker_frame
-from tests.system.firmware_bench import found, frame_lines
-from tests.system.serial_line import levels, received
 
 COLUMNS, ROWS = 64, 48
 CLOCK_HZ, DIVISOR = 2_000_000, 4
@@ -60,19 +57,6 @@ def play(simulator, program, pictures):
     return simulate_board(board, "ulx3s", simulator, arrays, cells=["ehxplll", "oddrx1f"], size=f"{COLUMNS}x{ROWS}")
 
 
-def lines(captured):
-    text = received(levels(captured["line"], PERIOD_PS // 1000, captured["end"]), DIVISOR).decode("ascii")
-    status, *rest, end = text.split("\r\n")
-    assert parse(status).name == "RPSTA" and end == ""
-    return rest
-
-
-def check_frame(told, number, picture):
-    """Sentences of a frame, equal to the reference's of what the model finds; only the time is taken from them."""
-    clocks = -(-int(parse(told[0]).fields[1].replace(".", "")) * CLOCK_HZ // 1_000_000)
-    assert told == frame_lines(number, clocks, found(picture), 0, camera=CAMERA, clock_hz=CLOCK_HZ)
-
-
 def shown(captured):
     """Pictures that a monitor makes of the cable."""
     channels = [captured["bits"] >> channel & 1 for channel in range(4)]
@@ -105,12 +89,12 @@ def test_from_camera_to_monitor(simulator):
     camera = Ov7670Camera()
     camera.bus.writes.extend(map(tuple, captured["writes"].tolist()))
     assert camera.is_set_up
-    told = lines(captured)
-    check_frame(told[:2], 0, pictures[0])
+    told = told_lines(captured, PERIOD_PS // 1000, DIVISOR)
+    check_frame(told[:2], 0, pictures[0], camera=CAMERA, clock_hz=CLOCK_HZ)
     before, after = captured["log"].tolist()
     assert before & 0b101111 == 0b000001 and after & 0b101111 == 0b100001
     if is_long:
-        check_frame(told[2:], 1, pictures[1])
+        check_frame(told[2:], 1, pictures[1], camera=CAMERA, clock_hz=CLOCK_HZ)
         half = len(captured["bits"]) // 2
         for bits, picture in zip((captured["bits"][:half], captured["bits"][half:]), pictures, strict=True):
             for got in shown({"bits": bits}):
