@@ -178,32 +178,31 @@ class Sensor(wiring.Component):
             registers.irq_status.marker_set.eq(stores["marker"].stored),
         ]
 
-        window, item = registers.blob_window, stores["blob"].read_data
-        addresses = {"blob": window.index}
+        shown, item = registers.blob, stores["blob"].read_data
+        addresses = {"blob": registers.blob_window.index}
         m.d.comb += [
-            window.box_min.x.eq(item.x_min),
-            window.box_min.y.eq(item.y_min),
-            window.box_max.x.eq(item.x_max),
-            window.box_max.y.eq(item.y_max),
-            window.area.pixels.eq(item.area),
+            shown.box_min.x.eq(item.x_min),
+            shown.box_min.y.eq(item.y_min),
+            shown.box_max.x.eq(item.x_max),
+            shown.box_max.y.eq(item.y_max),
+            shown.area.pixels.eq(item.area),
         ]
-        window, item = registers.corner_window, stores["corner"].read_data
-        addresses["corner"] = window.index
+        shown, item = registers.corner, stores["corner"].read_data
+        addresses["corner"] = registers.corner_window.index
         m.d.comb += [
-            window.position.x.eq(item.x),
-            window.position.y.eq(item.y),
-            *(getattr(window.detail, field).eq(item[field]) for field in ("score", "arc", "bright")),
+            shown.position.x.eq(item.x),
+            shown.position.y.eq(item.y),
+            *(getattr(shown.detail, field).eq(item[field]) for field in ("score", "arc", "bright")),
         ]
         published, live, item = registers.marker_window, registers.live_window, stores["marker"].read_data
         # One read port for all: the registers X1 to Y4 have it whenever no window is asked.
         addresses["marker"] = Mux(published.select | live.select, published.index, registers.marker_address.marker)
-        for window in (published, live):
-            for name, _ in item.shape():
-                register = getattr(window, name)
-                if name.endswith("area"):
-                    m.d.comb += register.pixels.eq(item[name])
-                else:
-                    m.d.comb += [register.x.eq(item[name].x), register.y.eq(item[name].y)]
+        for name, _ in item.shape():
+            register = getattr(registers.marker, name)
+            if name.endswith("area"):
+                m.d.comb += register.pixels.eq(item[name])
+            else:
+                m.d.comb += [register.x.eq(item[name].x), register.y.eq(item[name].y)]
         for vertex in range(1, 5):
             m.d.comb += [
                 getattr(registers, f"x{vertex}").column.eq(item[f"v{vertex}"].x),

@@ -12,7 +12,9 @@ COMMAND   ``name : Out(width)``       what software writes, while ``name_written
           ``name_written : Out(1)``   a strobe in the clock of the write
 PULSE     ``name : Out(1)``           a strobe in the clock in which software writes 1
 FLAG      ``name_set : In(1)``        sets it; at the same time as software clears it, it stays set
-COUNTER   ``name_incr : In(1)``       adds 1; at the same time as software clears it, it becomes 1
+COUNTER   ``name_incr : In(1)``       adds 1; at the same time as software clears it, it becomes 1. Counters of
+                                      32 bits share a memory, and tell up to 72 clocks later what they have
+                                      counted: :class:`~hdl.regs.counters.Counters`
 CONSTANT  no port
 ========  ==========================  ======================================================================
 
@@ -20,19 +22,28 @@ A register may have fields to read and others to write in the same bits.
 
 A window has ``window.index``, the number of the item that the bus asks for, and ``window.select``, set if it
 is this window that it asks, both in the clock of the address, and takes the item's fields one clock later:
-``window.register.field``. So a memory's read port fits as it is. Windows cannot be written.
+``item.register.field``, where ``item`` is the name of its register file. So a memory's read port fits as it is.
+Windows of the same register file show the same item: they are ways to one memory. Windows cannot be written.
 
-Numbers: see :class:`~hdl.regs.bus.RegisterBus`; one multiplexer of all registers between the clock of
-``window.index`` plus 1 and ``read_data``. ``irq`` is a register: one clock after a flag that is enabled by
+::
+
+    address -> decoded -> | a bit for each register | -> AND with its fields -> OR of all -> | read_data |
+
+Numbers: see :class:`~hdl.regs.bus.RegisterBus`. ``irq`` is a register: one clock after a flag that is enabled by
 its setting.
 """
+
+from functools import reduce
+from operator import or_
 
 from amaranth import C, Cat, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
+from amaranth.utils import bits_for
 
 from hdl.config import SensorConfig
 from hdl.regs.bus import RegisterBus
+from hdl.regs.counters import Counters
 from hdl.regs.map import Behaviour, sensor_map
 
 __all__ = ["RegisterBank", "sensor_bank"]
@@ -66,8 +77,16 @@ def _register_ports(registers):
     return {name: Out(wiring.Signature(members)) for name, members in ports.items() if members}
 
 
-def _window_ports(window):
-    return wiring.Signature({"index": Out(range(window.count)), "select": Out(1)} | _register_ports(window.registers))
+def _window_ports(windows):
+    """A nested signature for each window, and for each kind of item."""
+    asked = {w.name: wiring.Signature({"index": Out(range(w.count)), "select": Out(1)}) for w in windows}
+    items = {w.item: wiring.Signature(_register_ports(w.registers)) for w in windows}
+    return {name: Out(signature) for name, signature in (asked | items).items()}
+
+
+def _any(values):
+    """All values joined by OR."""
+    return reduce(or_, values, C(0))
 
 
 class RegisterBank(wiring.Component):
@@ -81,7 +100,7 @@ class RegisterBank(wiring.Component):
     Raises
     ------
     ValueError
-        If a window has other fields.
+        If a window has other fields, or a name is both a register's and an item's.
 
     Members
     -------
@@ -99,35 +118,35 @@ class RegisterBank(wiring.Component):
                     if field.behaviour not in (Behaviour.CONSTANT, Behaviour.VALUE):
                         path = f"{window.name}.{register.name}.{field.name}"
                         raise ValueError(f"{path}: a window can only be read")
+        names = {register.name for register in registers.registers}
+        for window in registers.windows:
+            if window.item in names:
+                raise ValueError(f"{window.item} is a register's name and that of the items of {window.name}")
         self.map = registers
         super().__init__(
             {
                 "bus": In(RegisterBus(registers.addr_width)),
                 "irq": Out(1),
                 **_register_ports(registers.registers),
-                **{window.name: Out(_window_ports(window)) for window in registers.windows},
+                **_window_ports(registers.windows),
             }
         )
 
     def elaborate(self, platform):
         m = Module()
-        address, reads = Signal.like(self.bus.address), Signal()
-        m.d.sync += [address.eq(self.bus.address), reads.eq(self.bus.read)]
+        self._decode(m)
         values = {}  # (register, field) -> what software reads
-        word, words = Signal(32), {}
+        words = self._count(m)
         for register in self.map.registers:
-            is_read = reads & (address == register.offset // 4)
-            words[register.offset // 4] = self._register(m, register, is_read, values)
-        with m.Switch(address):
-            for offset, value in words.items():
-                with m.Case(offset):
-                    m.d.comb += word.eq(value)
-            for window in self.map.windows:
-                for register in window.registers:
-                    with m.Case(self._pattern(window, register)):
-                        m.d.comb += word.eq(self._item(window, register))
+            asked = self._asked(m, register.name, self._hit(register.offset // 4))
+            words.append(self._register(m, register, asked, values) & asked.replicate(32))
+        for item, windows in self._windows().items():
+            for register in windows[0].registers:
+                hits = [self.bus.address.matches(self._pattern(window, register)) for window in windows]
+                asked = self._asked(m, f"{item}_{register.name}", _any(hits))
+                words.append(self._item(item, register) & asked.replicate(32))
         self._connect_windows(m)
-        m.d.sync += self.bus.read_data.eq(word & reads.replicate(32))
+        m.d.sync += self.bus.read_data.eq(_any(words))
         interrupts = [
             values[register.name, field.name] & values[field.enable]
             for register in self.map.registers
@@ -136,6 +155,62 @@ class RegisterBank(wiring.Component):
         ]
         m.d.sync += self.irq.eq(Cat(interrupts).any())
         return m
+
+    def _decode(self, m):
+        """The address in groups of three bits, so that a register's is found from three of them."""
+        self._groups = []
+        bits = self.bus.address
+        used = bits_for(max((register.offset // 4 for register in self.map.registers), default=0))
+        for low in range(0, used, 3):
+            group = Signal(8, name=f"group{low // 3}")
+            m.d.comb += group.eq(1 << bits[low : min(low + 3, used)])
+            self._groups.append(group)
+        if used < len(bits):
+            m.d.comb += (beyond := Signal(name="beyond")).eq(bits[used:].any())
+            self._groups.append(Cat(~beyond))
+
+    def _hit(self, number):
+        """Whether the bus has the address of this word."""
+        digits = [number >> 3 * k & 7 for k in range(len(self._groups))]
+        result = C(1)
+        for group, digit in zip(self._groups, digits, strict=True):
+            result &= group[digit]
+        return result
+
+    def _asked(self, m, name, hit):
+        """A register that is set in the clock after a read with this address."""
+        asked = Signal(name=f"{name}_asked")
+        m.d.sync += asked.eq(hit & self.bus.read)
+        return asked
+
+    def _windows(self):
+        """Item -> its windows."""
+        kinds = {}
+        for window in self.map.windows:
+            kinds.setdefault(window.item, []).append(window)
+        return kinds
+
+    def _count(self, m):
+        """The large counters, which share a memory, and what a read brings of them: a list of one word or none."""
+        self._counted = [
+            (register, field)
+            for register in self.map.registers
+            for field in register.fields
+            if field.behaviour == Behaviour.COUNTER and field.width == 32
+        ]
+        if not self._counted:
+            return []
+        m.submodules.counters = counters = Counters(count=len(self._counted), width=32)
+        hits = [self._hit(register.offset // 4) for register, _ in self._counted]
+        events = [getattr(getattr(self, register.name), f"{field.name}_incr") for register, field in self._counted]
+        number = [_any(hit for k, hit in enumerate(hits) if k >> bit & 1) for bit in range(len(counters.read_number))]
+        m.d.comb += [
+            counters.events.eq(Cat(events)),
+            counters.clears.eq(Cat(hit & self.bus.write for hit in hits)),
+            counters.read_number.eq(Cat(number)),
+        ]
+        asked = self._asked(m, "counters", _any(hits))
+        return [counters.read_data & asked.replicate(32)]
 
     def _bits(self, number, width):
         return format(number, f"0{width}b") if width else ""
@@ -163,9 +238,9 @@ class RegisterBank(wiring.Component):
             position = field.low + field.width
         return Cat(*parts)
 
-    def _item(self, window, register):
-        """What the register of a window's item reads as."""
-        ports = getattr(getattr(self, window.name), register.name, None)
+    def _item(self, item, register):
+        """What the register of an item reads as."""
+        ports = getattr(getattr(self, item), register.name, None)
         return self._word(
             {
                 field: C(field.reset, field.width)
@@ -178,7 +253,7 @@ class RegisterBank(wiring.Component):
     def _register(self, m, register, is_read, values):
         """Make a register, and return what it reads as."""
         written = Signal(name=f"{register.name}_written")
-        m.d.comb += written.eq(self.bus.write & (self.bus.address == register.offset // 4))
+        m.d.comb += written.eq(self.bus.write & self._hit(register.offset // 4))
         ports = getattr(self, register.name, None)
         word = {}
         for field in register.fields:
@@ -208,6 +283,8 @@ class RegisterBank(wiring.Component):
                 case Behaviour.FLAG:
                     value = Signal(init=field.reset, name=name)
                     m.d.sync += value.eq(value & ~(written & data) | getattr(ports, f"{field.name}_set"))
+                case Behaviour.COUNTER if (register, field) in self._counted:
+                    continue
                 case Behaviour.COUNTER:
                     value = Signal(field.width, init=field.reset, name=name)
                     increment = getattr(ports, f"{field.name}_incr")

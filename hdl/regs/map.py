@@ -93,6 +93,7 @@ class Window:
     """``count`` items of ``stride`` bytes from byte ``offset`` on."""
 
     name: str
+    item: str  #: name of the register file that each item is
     offset: int
     count: int
     stride: int
@@ -164,7 +165,9 @@ def _window(node):
         raise ValueError(f"{node.get_path()} must be external and have one dimension")
     if count < 2 or count & (count - 1) or stride & (stride - 1) or offset % (count * stride):
         raise ValueError(f"{node.get_path()} must have a power of two of items and of words, and an address to match")
-    return Window(node.inst_name.lower(), offset, count, stride, _registers(node.children()))
+    return Window(
+        node.inst_name.lower(), node.orig_type_name.lower(), offset, count, stride, _registers(node.children())
+    )
 
 
 def _tree(path, top, macros):

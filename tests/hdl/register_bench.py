@@ -10,6 +10,7 @@ from hdl.pixels import unstalled
 from hdl.regs.bank import RegisterBank
 from hdl.regs.map import Behaviour, sensor_map
 from sim.engine import fields
+from sim.models.counters import Counters
 
 __all__ = ["BUS", "CONFIG", "REGISTERS", "WINDOWS", "BankBench", "check", "sensor_bench"]
 
@@ -70,13 +71,15 @@ REGISTERS = {
 }
 _POINT = {"x": (0, 16), "y": (16, 16)}
 _MARKER = [_POINT] * 6 + [{"pixels": (0, 32)}] * 2
-#: Name -> (offset, items, fields of each word).
+#: Name -> (offset, items, fields of each word, name of the item).
 WINDOWS = {
-    "marker_window": (0x1000, 64, _MARKER),
-    "live_window": (0x2000, 64, _MARKER),
-    "blob_window": (0x4000, 256, [_POINT, _POINT, {"pixels": (0, 32)}, {}]),
-    "corner_window": (0x8000, 1024, [_POINT, {"score": (0, 8), "arc": (8, 5), "bright": (16, 1)}]),
+    "marker_window": (0x1000, 64, _MARKER, "marker"),
+    "live_window": (0x2000, 64, _MARKER, "marker"),
+    "blob_window": (0x4000, 256, [_POINT, _POINT, {"pixels": (0, 32)}, {}], "blob"),
+    "corner_window": (0x8000, 1024, [_POINT, {"score": (0, 8), "arc": (8, 5), "bright": (16, 1)}], "corner"),
 }
+#: Something that tells the items of one register file from those of another.
+ITEMS = {"marker": 0x1000, "blob": 0x4000, "corner": 0x8000}
 BUS = data.StructLayout({"address": 14, "read": 1, "write": 1, "write_data": 32})
 
 
@@ -137,16 +140,19 @@ class BankBench(wiring.Component):
                     strobes.append(getattr(ports, f"{field.name}_incr"))
             m.d.comb += [seen[f"{name}.{port}"].eq(getattr(ports, port)) for port in _told(field)]
         m.d.comb += Cat(strobes).eq(self.strobes.payload & self.strobes.valid.replicate(len(strobes)))
+        indices = {window.item: Signal(10, name=f"{window.item}_index") for window in self._map.windows}
         for window in self._map.windows:
-            ports, index = getattr(bank, window.name), Signal(10, name=f"{window.name}_index")
-            m.d.sync += index.eq(ports.index)
+            ports = getattr(bank, window.name)
             m.d.comb += seen[f"{window.name}.select"].eq(ports.select)
-            for register in window.registers:
+            with m.If(ports.select):
+                m.d.sync += indices[window.item].eq(ports.index)
+        for item, registers in {window.item: window.registers for window in self._map.windows}.items():
+            for register in registers:
                 for field in register.fields:
                     if field.behaviour == Behaviour.VALUE:
-                        key = window.offset + 32 * register.offset + field.low
-                        m.d.comb += getattr(getattr(ports, register.name), field.name).eq(
-                            mixed(index, key, field.width)
+                        key = ITEMS[item] + 32 * register.offset + field.low
+                        m.d.comb += getattr(getattr(getattr(bank, item), register.name), field.name).eq(
+                            mixed(indices[item], key, field.width)
                         )
         return m
 
@@ -166,16 +172,21 @@ class Model:
         }
         self.state = {key: rest[4] for key, rest in self.fields.items()}
         self.events = [key for key, rest in self.fields.items() if rest[3] in (F, N)]
+        self.counted = [key for key, rest in self.fields.items() if rest[3] == N and rest[2] == 32]
+        self.counters = Counters(len(self.counted), 32) if self.counted else None
 
     def word(self, address, clock):
         """What a read of a byte address brings that looks in this clock."""
-        for offset, items, words in WINDOWS.values() if len(self.fields) > 10 else ():
+        for offset, items, words, name in WINDOWS.values() if len(self.fields) > 10 else ():
             item, word = divmod((address - offset) // 4, len(words))
             if offset <= address and item < items:
-                return sum(mixed(item, offset + 128 * word + low, width) << low for low, width in words[word].values())
+                key = ITEMS[name] + 128 * word
+                return sum(mixed(item, key + low, width) << low for low, width in words[word].values())
         total = 0
         for key, (offset, low, width, behaviour, _) in self.fields.items():
-            if offset == address and behaviour not in (COMMAND, PULSE):
+            if key in self.counted:
+                total |= self.counters.data() if offset == address else 0
+            elif offset == address and behaviour not in (COMMAND, PULSE):
                 value = mixed(clock, offset + low, width) if behaviour in (V, TAKEN) else self.state[key]
                 total |= value << low
         return total
@@ -203,8 +214,16 @@ class Model:
         state = self.state
         return any(state.get(("irq_status", name)) and state["irq_enable", name] for name in ("published", "marker"))
 
-    def step(self, write, strobes):
-        """``write`` is None or (byte address, data)."""
+    def _count(self, write, read, strobes):
+        events = sum((strobes >> self.events.index(key) & 1) << k for k, key in enumerate(self.counted))
+        offsets = [self.fields[key][0] for key in self.counted]
+        clears = 1 << offsets.index(write[0]) if write is not None and write[0] in offsets else 0
+        self.counters.step(events, clears, offsets.index(read) if read in offsets else 0)
+
+    def step(self, write, read, strobes):
+        """``write`` is None or (byte address, data), ``read`` None or a byte address."""
+        if self.counters:
+            self._count(write, read, strobes)
         for key, (offset, low, width, behaviour, _) in self.fields.items():
             is_written = write is not None and write[0] == offset
             wrote = write[1] >> low & (1 << width) - 1 if is_written else 0
@@ -213,7 +232,7 @@ class Model:
                 self.state[key] = wrote
             elif behaviour == F:
                 self.state[key] = self.state[key] & ~wrote | event
-            elif behaviour == N:
+            elif behaviour == N and key not in self.counted:
                 self.state[key] = event if is_written else min(self.state[key] + event, (1 << width) - 1)
 
 
@@ -234,8 +253,8 @@ def check(run, given, bench, registers):
         looked.append(0 if read is None else model.word(read, clock))
         for name, value in model.told(write, read):
             assert row[name] == value, (clock, name)
-        for name, (offset, items, words) in WINDOWS.items() if len(model.fields) > 10 else ():
+        for name, (offset, items, words, _) in WINDOWS.items() if len(model.fields) > 10 else ():
             inside = offset <= 4 * transfer["address"] < offset + 4 * items * len(words)
             assert row[f"{name}.select"] == inside, (clock, name)
-        model.step(write, strobes[clock])
+        model.step(write, 4 * transfer["address"] if transfer["read"] else None, strobes[clock])
     return model

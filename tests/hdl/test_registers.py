@@ -62,8 +62,8 @@ def every_address(seed):
         [
             np.repeat(np.arange(0, 0x100, 4), 16),
             random.integers(0, 1 << 14, 800) * 4,
-            *(offset + 4 * np.arange(-4, 12) for offset, _, _ in WINDOWS.values()),
-            *(offset + 4 * items * len(words) + 4 * np.arange(-12, 4) for offset, items, words in WINDOWS.values()),
+            *(offset + 4 * np.arange(-4, 12) for offset, *_ in WINDOWS.values()),
+            *(offset + 4 * items * len(words) + 4 * np.arange(-12, 4) for offset, items, words, _ in WINDOWS.values()),
         ]
     )
 
@@ -135,7 +135,7 @@ def test_map_is_what_was_asked_for():
         for r in found.registers
     } == REGISTERS
     assert {w.name: (w.offset, w.count, w.stride) for w in found.windows} == {
-        name: (offset, items, 4 * len(words)) for name, (offset, items, words) in WINDOWS.items()
+        name: (offset, items, 4 * len(words)) for name, (offset, items, words, _) in WINDOWS.items()
     }
 
 
@@ -221,7 +221,7 @@ def test_c_header_of_the_sensor(documents):
             assert re.search(rf"^#define {macro}_bm {((1 << width) - 1) << low:#x}$", text, re.MULTILINE), macro
             if behaviour != "value":
                 assert re.search(rf"^#define {macro}_reset {reset:#x}$", text, re.MULTILINE), macro
-    for name, (offset, _, words) in WINDOWS.items():
+    for name, (offset, _, words, _) in WINDOWS.items():
         checks.append(f"offsetof(rasterpose_t, {name.upper()}[1]) == {offset + 4 * len(words)}")
     compile_header(documents, "sensor.c", checks, "gcc", "-std=gnu11")
 
