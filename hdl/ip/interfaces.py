@@ -30,7 +30,7 @@ class AvalonVideo(wiring.Signature):
 
 
 class AvalonSlave(wiring.Signature):
-    """Avalon-MM as its master sees it: words of 32 bits, ``readLatency`` 2, no wait states, a transfer in every clock.
+    """Avalon-MM as its master sees it: words of 32 bits, ``readLatency`` 3, no wait states, a transfer in every clock.
 
     Parameters
     ----------

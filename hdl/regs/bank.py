@@ -27,7 +27,12 @@ Windows of the same register file show the same item: they are ways to one memor
 
 ::
 
-    address -> decoded -> | a bit for each register | -> AND with its fields -> OR of all -> | read_data |
+    address -> decoded -> | a bit for each register | -> AND with its fields -> OR of all -> | word | -.
+                                                                                                   OR -> | read_data |
+                                items out of memories -> | items | -> AND -> OR of all ------------'
+
+What comes out of a memory has a register before it is chosen from, and so do ``external`` registers. What a read
+tells is nevertheless how things stood in the clock after its address.
 
 Numbers: see :class:`~hdl.regs.bus.RegisterBus`. ``irq`` is a register: one clock after a flag that is enabled by
 its setting.
@@ -136,17 +141,22 @@ class RegisterBank(wiring.Component):
         m = Module()
         self._decode(m)
         values = {}  # (register, field) -> what software reads
-        words = self._count(m)
+        words, late = self._count(m), []
         for register in self.map.registers:
             asked = self._asked(m, register.name, self._hit(register.offset // 4))
-            words.append(self._register(m, register, asked, values) & asked.replicate(32))
+            value = self._register(m, register, asked, values)
+            if register.external:
+                late.append(self._late(m, register.name, asked, value))
+            else:
+                words.append(value & asked.replicate(32))
         for item, windows in self._windows().items():
             for register in windows[0].registers:
+                name = f"{item}_{register.name}"
                 hits = [self.bus.address.matches(self._pattern(window, register)) for window in windows]
-                asked = self._asked(m, f"{item}_{register.name}", _any(hits))
-                words.append(self._item(item, register) & asked.replicate(32))
+                late.append(self._late(m, name, self._asked(m, name, _any(hits)), self._item(item, register)))
         self._connect_windows(m)
-        m.d.sync += self.bus.read_data.eq(_any(words))
+        word = Signal(32)
+        m.d.sync += [word.eq(_any(words)), self.bus.read_data.eq(_any([word, *late]))]
         interrupts = [
             values[register.name, field.name] & values[field.enable]
             for register in self.map.registers
@@ -182,6 +192,13 @@ class RegisterBank(wiring.Component):
         asked = Signal(name=f"{name}_asked")
         m.d.sync += asked.eq(hit & self.bus.read)
         return asked
+
+    @staticmethod
+    def _late(m, name, asked, value):
+        """The same a clock later, from registers that a memory can have as its own."""
+        asked_later, register = Signal(name=f"{name}_asked_later"), Signal(32, name=f"{name}_later", reset_less=True)
+        m.d.sync += [asked_later.eq(asked), register.eq(value)]
+        return register & asked_later.replicate(32)
 
     def _windows(self):
         """Item -> its windows."""

@@ -74,6 +74,7 @@ class Counters(wiring.Component):
         m.d.comb += Cat(phase, number).eq(turn)
         pending = Array(Signal(range(self.lag + 1), name=f"pending{k}") for k in range(self._count))
         cleared = Signal(self._count, init=-1)  # also after a reset, which the memory does not mind
+        is_cleared, is_clearing = Array(cleared)[number], Array(self.clears)[number]
         exists = number < self._count
 
         # Phase 0: read; and take what is pending, or leave it until a 0 is written.
@@ -81,17 +82,16 @@ class Counters(wiring.Component):
         amount, zero, spoilt = Signal.like(pending[0]), Signal(), Signal()
         m.d.comb += [begins.eq((phase == 0) & exists), own.addr.eq(number)]
         with m.If(begins):
-            m.d.sync += [zero.eq(cleared.bit_select(number, 1)), amount.eq(pending[number])]
-            with m.If(cleared.bit_select(number, 1)):
+            m.d.sync += [zero.eq(is_cleared), amount.eq(pending[number])]
+            with m.If(is_cleared):
                 m.d.sync += amount.eq(0)
         # Phase 1: what was read. Phase 2: the sum. Phase 3: write, unless the counter was cleared meanwhile.
         stored = Signal(self._width, reset_less=True)
         total = Signal(self._width + 1, reset_less=True)
         m.d.sync += [stored.eq(own.data), total.eq(stored + amount)]
-        is_cleared = self.clears.bit_select(number, 1)
-        m.d.sync += spoilt.eq(is_cleared | spoilt & (phase != 0))
+        m.d.sync += spoilt.eq(is_clearing | spoilt & (phase != 0))
         m.d.comb += [
-            writes.eq((phase == _PHASES - 1) & exists & ~spoilt & ~is_cleared),
+            writes.eq((phase == _PHASES - 1) & exists & ~spoilt & ~is_clearing),
             write.addr.eq(number),
             write.en.eq(writes),
             write.data.eq(Mux(zero, 0, total[:-1] | total[-1].replicate(self._width))),
@@ -114,6 +114,6 @@ class Counters(wiring.Component):
         m.d.sync += shown.eq(self.read_number)
         m.d.comb += [
             read.addr.eq(self.read_number),
-            self.read_data.eq(Mux(cleared.bit_select(shown, 1), 0, read.data)),
+            self.read_data.eq(Mux(Array(cleared)[shown], 0, read.data)),
         ]
         return m

@@ -1,9 +1,8 @@
 """A register description in SystemRDL, as plain Python objects.
 
-Understood is what the system needs: an address map of 32-bit registers, and of windows, which are
-one-dimensional arrays of ``external`` register files. What a field does follows from SystemRDL's own
-properties; see :class:`Behaviour`. Anything else is refused, so that hardware, header and documentation
-cannot differ.
+Understood is what the system needs: an address map of 32-bit registers, ``external`` or not, and of windows, which
+are one-dimensional arrays of ``external`` register files. What a field does follows from SystemRDL's own properties;
+see :class:`Behaviour`. Anything else is refused, so that hardware, header and documentation cannot differ.
 """
 
 import dataclasses
@@ -82,6 +81,7 @@ class Register:
     name: str
     offset: int
     fields: tuple
+    external: bool = False  #: its values come out of a memory, as a window's items do
 
     def field(self, name):
         """The field called ``name``."""
@@ -154,7 +154,7 @@ def _registers(nodes):
         if not isinstance(node, RegNode) or node.is_array or node.size != 4:
             raise ValueError(f"{node.get_path()} must be a single register of 32 bits")
         fields = tuple(map(_field, node.fields()))
-        registers.append(Register(node.inst_name.lower(), node.raw_address_offset, fields))
+        registers.append(Register(node.inst_name.lower(), node.raw_address_offset, fields, node.external))
     return tuple(registers)
 
 

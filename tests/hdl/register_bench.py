@@ -8,6 +8,7 @@ from amaranth.lib.wiring import In, Out
 from hdl.config import SensorConfig
 from hdl.pixels import unstalled
 from hdl.regs.bank import RegisterBank
+from hdl.regs.bus import READ_LATENCY
 from hdl.regs.map import Behaviour, sensor_map
 from sim.engine import fields
 from sim.models.counters import Counters
@@ -241,12 +242,12 @@ def check(run, given, bench, registers):
     model = Model(registers)
     seen, bus = fields(run["o"], bench.seen), fields(given["bus"], BUS)
     strobes = np.asarray(given["strobes"]).tolist()
-    looked = [0]  # what was read, one clock before it is seen
+    looked = [0, 0]  # what was read, two clocks before it is seen
     irq = 0
     for clock, (row, transfer) in enumerate(zip(seen, bus, strict=False)):
         assert row["irq"] == irq, clock
         irq = model.interrupts()
-        assert row["read_data"] == looked[-1], (clock, hex(4 * bus[clock - 2]["address"]))
+        assert row["read_data"] == looked[-READ_LATENCY + 1], (clock, hex(4 * bus[clock - READ_LATENCY]["address"]))
         before = bus[clock - 1]
         read = 4 * before["address"] if clock and before["read"] else None
         write = (4 * transfer["address"], int(transfer["write_data"])) if transfer["write"] else None

@@ -108,16 +108,10 @@ class Nesting(wiring.Component):
         flush_end = Signal()
         ends_above, ends_run, touch = Signal(), Signal(), Signal()
         m.d.comb += [
-            flush_end.eq(flushing & flush_tick & (runs.remaining <= 1)),
-            ends_above.eq(
-                Mux(
-                    flushing,
-                    flush_tick & (runs.remaining != 0),
-                    self.step_valid & step.above & ~step.above_right,
-                )
-            ),
-            ends_run.eq(self.step_valid & step.here & ~step.right),
-            touch.eq((ends_above | ends_run) & (step.here | step.right) & (step.above | step.above_right) & ~flushing),
+            flush_end.eq(flushing & flush_tick & ~runs.more),
+            ends_above.eq(Mux(flushing, flush_tick & runs.some, step.ends_above)),
+            ends_run.eq(step.ends_run),
+            touch.eq(step.touch & ~flushing),
             runs.advance.eq(ends_above),
         ]
 

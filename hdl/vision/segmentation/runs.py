@@ -35,8 +35,8 @@ class Runs(wiring.Component):
         The row in hand begins anew.
     advance : In(1)
     run : Out(record)
-    remaining : Out(range)
-        Number of runs of the row above that are not yet advanced over.
+    some, more : Out(1)
+        There are runs of the row above that are not yet advanced over; there are two or more.
     """
 
     def __init__(self, *, width, slots):
@@ -56,7 +56,8 @@ class Runs(wiring.Component):
                 "restart": In(1),
                 "advance": In(1),
                 "run": Out(self._record),
-                "remaining": Out(index),
+                "some": Out(1),
+                "more": Out(1),
             }
         )
 
@@ -66,6 +67,7 @@ class Runs(wiring.Component):
         row = Signal()  # the half of the memories that is written
         position = Signal(range(self._depth + 1))  # number of ``run``
         ahead = Signal(range(self._depth + 2))
+        remaining = Signal(range(self._depth + 1))  # runs of the row above not yet advanced over
 
         # ``first`` and ``last`` are written at different addresses, so each has a memory.
         shape = data.StructLayout({"slot": self._record["slot"].shape, "first": 1})
@@ -129,7 +131,9 @@ class Runs(wiring.Component):
             m.d.sync += [
                 self.run.eq(following),
                 position.eq(position + 1),
-                self.remaining.eq(self.remaining - 1),
+                remaining.eq(remaining - 1),
+                self.some.eq(remaining > 1),
+                self.more.eq(remaining > 2),
             ]
         with m.If(self.append):
             m.d.sync += self.index.eq(self.index + 1)
@@ -138,7 +142,9 @@ class Runs(wiring.Component):
                 self.run.eq(head_next[0]),
                 second.eq(head_next[1]),
                 position.eq(0),
-                self.remaining.eq(self.index + self.append),
+                remaining.eq(self.index + self.append),
+                self.some.eq((self.index != 0) | self.append),
+                self.more.eq((self.index > 1) | (self.index == 1) & self.append),
                 self.index.eq(0),
                 row.eq(~row),
             ]

@@ -1,6 +1,6 @@
 """Binary pixels in, one step per pixel out, each with its neighbours in this row and the row above.
 
-A step needs the pixel to its right, so it happens when that pixel arrives, or one clock after the pixel itself at the
+A step needs the pixel to its right, so it is known when that pixel arrives, or one clock after the pixel itself at the
 end of a row. The row above is one bit a column in a synchronous-read memory.
 """
 
@@ -15,16 +15,19 @@ __all__ = ["Scan", "step_layout"]
 
 
 def step_layout(width, height):
-    """One step of the scan; at columns outside the frame, and above row 0, all is background."""
+    """One step of the scan. At columns outside the frame, and above row 0, all is background.
+
+    The events are those of 8-connectivity: of the runs that end at this column, in this row and in the row above, each
+    has been compared with what is in the other row so far.
+    """
     return data.StructLayout(
         {
             "x": bits_for(width - 1),
             "y": bits_for(height - 1),
             "run_start": bits_for(width - 1),  #: first column of the run that covers x, if any
-            "here": 1,  #: the pixel
-            "right": 1,  #: its right neighbour
-            "above": 1,
-            "above_right": 1,
+            "ends_run": 1,  #: a run of this row ends here
+            "ends_above": 1,  #: a run of the row above ends here
+            "touch": 1,  #: a run ends here, and the runs of both rows that are here or begin next are neighbours
             "eol": 1,
             "last": 1,
         }
@@ -34,8 +37,8 @@ def step_layout(width, height):
 class Scan(wiring.Component):
     """Turns the stream of binary pixels into steps.
 
-    Latency: a step comes with the arrival of the next pixel, in the same clock; the last of a row comes one clock
-    after its pixel. One step a clock at most.
+    Latency: a step comes one clock after the arrival of the next pixel; the last of a row comes two clocks after its
+    pixel. One step a clock at most.
 
     Memory: ``width`` bits.
 
@@ -75,10 +78,11 @@ class Scan(wiring.Component):
         run_start = Signal(range(self._width))
         new_row = Signal()  # the pixel that arrives is the first of its row
         open_frame = Signal()
-        step_valid = self.step_valid
+        step_valid = Signal()
 
-        m.d.comb += [
-            step_valid.eq(held_valid & (held.eol | (self.i.valid & ~new.first))),
+        m.d.comb += step_valid.eq(held_valid & (held.eol | (self.i.valid & ~new.first)))
+        m.d.sync += [
+            self.step_valid.eq(step_valid),
             self.cut.eq(self.i.valid & new.first & open_frame),
             self.cut_row.eq(y != 0),
         ]
@@ -125,14 +129,17 @@ class Scan(wiring.Component):
             with m.If(new.first):
                 m.d.sync += y.eq(0)
 
-        m.d.comb += [
+        # The pixel of the step, its right neighbour, and what is above the two.
+        here, right = held.foreground, new.foreground & ~held.eol
+        up, up_right = above & (y != 0), above_right & (y != 0) & ~held.eol
+        ends_run, ends_above = here & ~right, up & ~up_right
+        m.d.sync += [
             self.step.x.eq(x),
             self.step.y.eq(y),
             self.step.run_start.eq(run_start),
-            self.step.here.eq(held.foreground),
-            self.step.right.eq(new.foreground & ~held.eol),
-            self.step.above.eq(above & (y != 0)),
-            self.step.above_right.eq(above_right & (y != 0) & ~held.eol),
+            self.step.ends_run.eq(ends_run & step_valid),
+            self.step.ends_above.eq(ends_above & step_valid),
+            self.step.touch.eq((ends_above | ends_run) & (here | right) & (up | up_right) & step_valid),
             self.step.eol.eq(held.eol),
             self.step.last.eq(held.last),
         ]
