@@ -178,7 +178,7 @@ class Sensor(wiring.Component):
             registers.irq_status.marker_set.eq(stores["marker"].stored),
         ]
 
-        shown, item = registers.blob, stores["blob"].read_data
+        shown, item = registers.items.blob, stores["blob"].read_data
         addresses = {"blob": registers.blob_window.index}
         m.d.comb += [
             shown.box_min.x.eq(item.x_min),
@@ -187,7 +187,7 @@ class Sensor(wiring.Component):
             shown.box_max.y.eq(item.y_max),
             shown.area.pixels.eq(item.area),
         ]
-        shown, item = registers.corner, stores["corner"].read_data
+        shown, item = registers.items.corner, stores["corner"].read_data
         addresses["corner"] = registers.corner_window.index
         m.d.comb += [
             shown.position.x.eq(item.x),
@@ -198,7 +198,7 @@ class Sensor(wiring.Component):
         # One read port for all: the registers X1 to Y4 have it whenever no window is asked.
         addresses["marker"] = Mux(published.select | live.select, published.index, registers.marker_address.marker)
         for name, _ in item.shape():
-            register = getattr(registers.marker, name)
+            register = getattr(registers.items.marker, name)
             if name.endswith("area"):
                 m.d.comb += register.pixels.eq(item[name])
             else:

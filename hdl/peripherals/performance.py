@@ -160,7 +160,7 @@ class PerformanceCounter(wiring.Component):
         m.submodules.registers = registers = self._bank
         m.submodules.tally = tally = self._tally
         connect(m, flipped(self.bus), registers.bus)
-        start, stop, section = registers.start, registers.stop, registers.section
+        start, stop, section = registers.start, registers.stop, registers.items.section
         m.d.comb += [
             tally.start.eq(Mux(start.sections_written, start.sections, 0)),
             tally.stop.eq(Mux(stop.sections_written, stop.sections, 0)),

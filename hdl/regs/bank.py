@@ -22,7 +22,7 @@ A register may have fields to read and others to write in the same bits.
 
 A window has ``window.index``, the number of the item that the bus asks for, and ``window.select``, set if it
 is this window that it asks, both in the clock of the address, and takes the item's fields one clock later:
-``item.register.field``, where ``item`` is the name of its register file. So a memory's read port fits as it is.
+``items.item.register.field``, where ``item`` is the name of its register file. So a memory's read port fits as it is.
 Windows of the same register file show the same item: they are ways to one memory. Windows cannot be written.
 
 ::
@@ -85,8 +85,10 @@ def _register_ports(registers):
 def _window_ports(windows):
     """A nested signature for each window, and for each kind of item."""
     asked = {w.name: wiring.Signature({"index": Out(range(w.count)), "select": Out(1)}) for w in windows}
-    items = {w.item: wiring.Signature(_register_ports(w.registers)) for w in windows}
-    return {name: Out(signature) for name, signature in (asked | items).items()}
+    items = {w.item: Out(wiring.Signature(_register_ports(w.registers))) for w in windows}
+    return {name: Out(signature) for name, signature in asked.items()} | (
+        {"items": Out(wiring.Signature(items))} if items else {}
+    )
 
 
 def _any(values):
@@ -105,7 +107,7 @@ class RegisterBank(wiring.Component):
     Raises
     ------
     ValueError
-        If a window has other fields, or a name is both a register's and an item's.
+        If a window has other fields.
 
     Members
     -------
@@ -123,10 +125,6 @@ class RegisterBank(wiring.Component):
                     if field.behaviour not in (Behaviour.CONSTANT, Behaviour.VALUE):
                         path = f"{window.name}.{register.name}.{field.name}"
                         raise ValueError(f"{path}: a window can only be read")
-        names = {register.name for register in registers.registers}
-        for window in registers.windows:
-            if window.item in names:
-                raise ValueError(f"{window.item} is a register's name and that of the items of {window.name}")
         self.map = registers
         super().__init__(
             {
@@ -257,7 +255,7 @@ class RegisterBank(wiring.Component):
 
     def _item(self, item, register):
         """What the register of an item reads as."""
-        ports = getattr(getattr(self, item), register.name, None)
+        ports = getattr(getattr(self.items, item), register.name, None)
         return self._word(
             {
                 field: C(field.reset, field.width)

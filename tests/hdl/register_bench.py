@@ -152,7 +152,7 @@ class BankBench(wiring.Component):
                 for field in register.fields:
                     if field.behaviour == Behaviour.VALUE:
                         key = ITEMS[item] + 32 * register.offset + field.low
-                        m.d.comb += getattr(getattr(getattr(bank, item), register.name), field.name).eq(
+                        m.d.comb += getattr(getattr(getattr(bank.items, item), register.name), field.name).eq(
                             mixed(indices[item], key, field.width)
                         )
         return m

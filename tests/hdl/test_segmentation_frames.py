@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdl.pixels import ItemKind
-from hdl.vision.segmentation import features
+from hdl.vision.segmentation import schedule
 from sim.engine import StreamEngine
 from sim.photos import photographs
 from tests.hdl.test_segmentation import check, check_stack, decode, run_frames, segmentation, stack_beats
@@ -92,7 +92,7 @@ def test_queue_has_room_to_spare(monkeypatch):
     """Five of its words are enough for the worst frames known; with three, ``overflow`` tells."""
     overflowed = {}
     for depth in (3, 5):
-        monkeypatch.setattr(features, "QUEUE_DEPTH", depth)
+        monkeypatch.setattr(schedule, "QUEUE_DEPTH", depth)
         engine = StreamEngine("segmentation", 33, 17)
         for name, pair in DEEPEST.items():
             engine.reset()

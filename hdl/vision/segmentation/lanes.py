@@ -9,23 +9,24 @@ __all__ = ["ExtremeLane", "SumLane", "control_layout"]
 
 
 def control_layout(depth):
-    """What all lanes do in a clock. ``read`` belongs to an operation two clocks before the rest does."""
+    """What all lanes do in a clock. What prepares a part comes a clock before what combines it."""
     slot = bits_for(depth - 1)
     return data.StructLayout(
         {
-            "read": slot,  #: slot whose value ``stored`` shows two clocks later
-            "write": 1,  #: the result goes to the accumulator and to slot ``slot``
-            "load": 1,  #: ``stored`` goes to the accumulator
+            "fetch": 1,  #: prepare: the accumulator takes what the memory has read
+            "second_fetched": 1,  #: prepare: the second operand is what the memory has read, and not the run's feature
+            "write": 1,  #: combine: the result goes to the accumulator, unless it fetches, and to slot ``slot``
             "slot": slot,
-            "fresh": 1,  #: the result is the second operand alone
-            "first_held": 1,  #: first operand: 1 the accumulator, 0 ``stored``
-            "second_stored": 1,  #: second operand: 1 ``stored``, 0 ``leaf``
+            "fresh": 1,  #: combine: the result is the second operand alone
         }
     )
 
 
 class _Lane(wiring.Component):
     """Registers common to both kinds. ``_combine(first, second, fresh)`` returns the result.
+
+    Controls that all lanes share end at the operands' registers, so that a clock is left for them to get there, and
+    another to combine.
 
     Members
     -------
@@ -35,7 +36,7 @@ class _Lane(wiring.Component):
     fetched : In(shape)
         What the memory has read.
     first : Out(shape)
-        The first operand.
+        The accumulator, which is the first operand.
     result : Out(shape)
         What is written.
     """
@@ -55,16 +56,12 @@ class _Lane(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         control = self.control
-        # Without a reset, so that it can be the register at the memory's output.
-        stored = Signal(self._shape, reset_less=True)
-        held, second = Signal(self._shape, reset_less=True), Signal(self._shape)
-        m.d.comb += [
-            self.first.eq(Mux(control.first_held, held, stored)),
-            second.eq(Mux(control.second_stored, stored, self.leaf)),
-            self.result.eq(self._combine(self.first, second, control.fresh)),
-        ]
-        m.d.sync += stored.eq(self.fetched)
-        with m.If(control.write | control.load):
+        held, second = (Signal(self._shape, name=name, reset_less=True) for name in ("held", "second"))
+        m.d.comb += [self.first.eq(held), self.result.eq(self._combine(held, second, control.fresh))]
+        m.d.sync += second.eq(Mux(control.second_fetched, self.fetched, self.leaf))
+        with m.If(control.fetch):
+            m.d.sync += held.eq(self.fetched)
+        with m.Elif(control.write):
             m.d.sync += held.eq(self.result)
         return m
 

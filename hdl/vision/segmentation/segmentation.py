@@ -29,8 +29,8 @@ class Segmentation(wiring.Component):
     Throughput: one pixel a clock, no blanking between rows or frames, any content. Only an endless series of tiny
     frames (of one row, of up to 3 columns, or up to 4 x 4 and 5 x 2 pixels) needs a pause, of 2 clocks a frame, because
     every frame has an END.
-    A narrower frame must not come before the one before is flushed: W + 11 clocks after its last pixel, which the
-    framer sees to. Latency: 11 clocks from the step that ends a component to its report.
+    A narrower frame must not come before the one before is flushed: W + 12 clocks after its last pixel, which the
+    framer sees to. Latency: 12 clocks from the step that ends a component to its report.
 
     Memory at 640 x 480: 640 bits of pixels, 7 kbit of run records, 6 kbit of stack, 3 kbit of slot numbers and
     324 x 487 bits of features.
