@@ -36,8 +36,8 @@ class Mark(enum.Enum, shape=unsigned(2)):
 
 
 def slot_count(width):
-    """Feature slots that frames of ``width`` columns need: (width + 1) // 2 + 1 can be in use, and three to spare."""
-    return (width + 1) // 2 + 4
+    """Feature slots that frames of ``width`` columns need: (width + 1) // 2 + 1 can be in use, and four to spare."""
+    return (width + 1) // 2 + 5
 
 
 def operation_layout(width, height):
@@ -215,9 +215,12 @@ class Nesting(wiring.Component):
         with m.If(whole & ~touch):
             m.d.comb += o.kept.eq(above.slot)
 
-        m.d.comb += [
-            slots.give.eq(o.merge | o.finish),
+        # A clock later: which slot it is comes late, and one more slot to spare costs less than to wait for it.
+        m.d.sync += [
+            slots.give.eq((o.merge | o.finish) & ~slots.clear),
             slots.given.eq(Mux(o.merge, o.gone, o.kept)),
+        ]
+        m.d.comb += [
             self.o_valid.eq(o.merge | o.finish | o.run | (o.mark != Mark.NONE)),
         ]
         with m.If(ends_above):

@@ -33,7 +33,7 @@ class Segmentation(wiring.Component):
     framer sees to. Latency: 12 clocks from the step that ends a component to its report.
 
     Memory at 640 x 480: 640 bits of pixels, 7 kbit of run records, 6 kbit of stack, 3 kbit of slot numbers and
-    324 x 487 bits of features.
+    325 x 487 bits of features.
 
     Parameters
     ----------

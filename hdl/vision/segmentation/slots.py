@@ -20,7 +20,7 @@ class Slots(wiring.Component):
     Parameters
     ----------
     depth : int
-        Number of slots: three more than can be in use.
+        Number of slots: three more than can be in use, those on their way back included.
 
     Members
     -------
