@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 from hdl.config import SMALLEST_FRAME, SensorConfig
 from hdl.pixels import CameraPixel, unstalled
 from hdl.regs.bank import RegisterBank
-from hdl.regs.bus import RegisterBus
+from hdl.regs.bus import READ_LATENCY, RegisterBus
 from hdl.regs.map import sensor_map
 from hdl.stores import sensor_stores
 from hdl.stores.frame_counter import FrameCounter
@@ -55,7 +55,7 @@ class Sensor(wiring.Component):
 
     def __init__(self, *, config=None, has_view=False):
         self._config = config or SensorConfig()
-        self._bank = RegisterBank(registers=sensor_map(self._config))
+        self._bank = RegisterBank(registers=sensor_map(self._config), read_latency=READ_LATENCY)
         self._has_view = has_view
         super().__init__(
             {

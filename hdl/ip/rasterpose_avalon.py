@@ -69,7 +69,7 @@ class RasterposeAvalon(wiring.Component):
         m.submodules.video_input = video_input = AvalonVideoInput()
         m.submodules.bank = bank = RegisterBank(registers=maps["video_input"][1])
         m.submodules.registers = registers = AvalonRegisters(addr_width=_ADDR_WIDTH)
-        m.submodules.hub = hub = RegisterHub(addr_width=_ADDR_WIDTH, slaves=slaves)
+        m.submodules.hub = hub = RegisterHub(addr_width=_ADDR_WIDTH, slaves=slaves, early={"video_input"})
         self._connect_ports(m, "video", video_input.video)
         self._connect_ports(m, "registers", registers.registers)
         connect(m, registers.bus, hub.bus)

@@ -31,8 +31,9 @@ Windows of the same register file show the same item: they are ways to one memor
                                                                                                    OR -> | read_data |
                                 items out of memories -> | items | -> AND -> OR of all ------------'
 
-What comes out of a memory has a register before it is chosen from, and so do ``external`` registers. What a read
-tells is nevertheless how things stood in the clock after its address.
+This is the bank with a ``read_latency`` of 3. What comes out of a memory has a register before it is chosen from, and
+so have ``external`` registers. With a latency of 2 there are neither these nor the word. In either case a read tells
+how things stood in the clock after its address.
 
 Numbers: see :class:`~hdl.regs.bus.RegisterBus`. ``irq`` is a register: one clock after a flag that is enabled by
 its setting.
@@ -47,7 +48,7 @@ from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
 from hdl.config import SensorConfig
-from hdl.regs.bus import RegisterBus
+from hdl.regs.bus import EARLY_LATENCY, READ_LATENCY, RegisterBus
 from hdl.regs.counters import Counters
 from hdl.regs.map import Behaviour, sensor_map
 
@@ -96,6 +97,11 @@ def _any(values):
     return reduce(or_, values, C(0))
 
 
+def _chosen(words):
+    """Of ``(asked, value)`` the one that is asked; 0 if none is."""
+    return _any(value & asked.replicate(32) for asked, value in words)
+
+
 class RegisterBank(wiring.Component):
     """All registers of a map, behind one bus.
 
@@ -103,11 +109,13 @@ class RegisterBank(wiring.Component):
     ----------
     registers : RegisterMap
         What there is. Windows may have fields of constants and values only.
+    read_latency : int
+        2 or 3 clocks.
 
     Raises
     ------
     ValueError
-        If a window has other fields.
+        If a window has other fields, or with another latency.
 
     Members
     -------
@@ -118,7 +126,10 @@ class RegisterBank(wiring.Component):
     ... : one member for each register that has ports, and for each window; see above.
     """
 
-    def __init__(self, *, registers):
+    def __init__(self, *, registers, read_latency=EARLY_LATENCY):
+        if read_latency not in (EARLY_LATENCY, READ_LATENCY):
+            raise ValueError(f"read_latency must be {EARLY_LATENCY} or {READ_LATENCY} clocks, not {read_latency!r}")
+        self._is_early = read_latency == EARLY_LATENCY
         for window in registers.windows:
             for register in window.registers:
                 for field in register.fields:
@@ -139,22 +150,25 @@ class RegisterBank(wiring.Component):
         m = Module()
         self._decode(m)
         values = {}  # (register, field) -> what software reads
-        words, late = self._count(m), []
+        words, late = self._count(m), []  # (asked, value)
         for register in self.map.registers:
             asked = self._asked(m, register.name, self._hit(register.offset // 4))
-            value = self._register(m, register, asked, values)
-            if register.external:
-                late.append(self._late(m, register.name, asked, value))
-            else:
-                words.append(value & asked.replicate(32))
+            word = asked, self._register(m, register, asked, values)
+            (late if register.external else words).append(word)
         for item, windows in self._windows().items():
             for register in windows[0].registers:
-                name = f"{item}_{register.name}"
                 hits = [self.bus.address.matches(self._pattern(window, register)) for window in windows]
-                late.append(self._late(m, name, self._asked(m, name, _any(hits)), self._item(item, register)))
+                asked = self._asked(m, f"{item}_{register.name}", _any(hits))
+                late.append((asked, self._item(item, register)))
         self._connect_windows(m)
-        word = Signal(32)
-        m.d.sync += [word.eq(_any(words)), self.bus.read_data.eq(_any([word, *late]))]
+        if self._is_early:
+            m.d.sync += self.bus.read_data.eq(_chosen(words + late))
+        else:
+            word = Signal(32)
+            m.d.sync += [
+                word.eq(_chosen(words)),
+                self.bus.read_data.eq(word | _chosen([self._late(m, *one) for one in late])),
+            ]
         interrupts = [
             values[register.name, field.name] & values[field.enable]
             for register in self.map.registers
@@ -192,11 +206,11 @@ class RegisterBank(wiring.Component):
         return asked
 
     @staticmethod
-    def _late(m, name, asked, value):
+    def _late(m, asked, value):
         """The same a clock later, from registers that a memory can have as its own."""
-        asked_later, register = Signal(name=f"{name}_asked_later"), Signal(32, name=f"{name}_later", reset_less=True)
+        asked_later, register = Signal(name=f"{asked.name}_later"), Signal(32, name="late", reset_less=True)
         m.d.sync += [asked_later.eq(asked), register.eq(value)]
-        return register & asked_later.replicate(32)
+        return asked_later, register
 
     def _windows(self):
         """Item -> its windows."""
@@ -206,7 +220,7 @@ class RegisterBank(wiring.Component):
         return kinds
 
     def _count(self, m):
-        """The large counters, which share a memory, and what a read brings of them: a list of one word or none."""
+        """The large counters, which share a memory, and what a read brings of them: a list of one or none."""
         self._counted = [
             (register, field)
             for register in self.map.registers
@@ -225,7 +239,7 @@ class RegisterBank(wiring.Component):
             counters.read_number.eq(Cat(number)),
         ]
         asked = self._asked(m, "counters", _any(hits))
-        return [counters.read_data & asked.replicate(32)]
+        return [(asked, counters.read_data)]
 
     def _bits(self, number, width):
         return format(number, f"0{width}b") if width else ""
@@ -313,4 +327,4 @@ class RegisterBank(wiring.Component):
 
 def sensor_bank(*, width, height):
     """The sensor's registers for a largest frame of ``width`` x ``height`` pixels."""
-    return RegisterBank(registers=sensor_map(SensorConfig(width=width, height=height)))
+    return RegisterBank(registers=sensor_map(SensorConfig(width=width, height=height)), read_latency=READ_LATENCY)

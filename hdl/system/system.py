@@ -175,7 +175,7 @@ class System(wiring.Component):
 
 def _hub(config):
     slaves = {name: (offset // 4, slave.addr_width) for name, (offset, slave) in system_maps(config).items()}
-    return RegisterHub(addr_width=_REGISTER_BITS, slaves=slaves)
+    return RegisterHub(addr_width=_REGISTER_BITS, slaves=slaves, early=slaves.keys() - {"sensor"})
 
 
 def decoder():

@@ -8,7 +8,7 @@ from amaranth.lib.wiring import In, Out
 from hdl.config import SensorConfig
 from hdl.pixels import unstalled
 from hdl.regs.bank import RegisterBank
-from hdl.regs.bus import READ_LATENCY
+from hdl.regs.bus import EARLY_LATENCY, READ_LATENCY
 from hdl.regs.map import Behaviour, sensor_map
 from sim.engine import fields
 from sim.models.counters import Counters
@@ -104,8 +104,9 @@ def _told(field):
 class BankBench(wiring.Component):
     """A bank whose inputs change with every clock and whose windows echo their index; its outputs in view."""
 
-    def __init__(self, registers):
+    def __init__(self, registers, read_latency=EARLY_LATENCY):
         self._map = registers
+        self.read_latency = read_latency
         self._fields = [(r.name, f) for r in registers.registers for f in r.fields]
         told = {f"{name}.{port}": width for name, f in self._fields for port, width in _told(f).items()}
         strobes = sum(f.behaviour in (Behaviour.FLAG, Behaviour.COUNTER) for _, f in self._fields)
@@ -116,7 +117,7 @@ class BankBench(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        m.submodules.bank = bank = RegisterBank(registers=self._map)
+        m.submodules.bank = bank = RegisterBank(registers=self._map, read_latency=self.read_latency)
         given, seen, clock = self.bus.payload, self.o.payload, Signal(32)
         m.d.sync += clock.eq(clock + 1)
         m.d.comb += [
@@ -159,7 +160,7 @@ class BankBench(wiring.Component):
 
 
 def sensor_bench(width, height):
-    return BankBench(sensor_map(SensorConfig(width=width, height=height)))
+    return BankBench(sensor_map(SensorConfig(width=width, height=height)), READ_LATENCY)
 
 
 class Model:
@@ -242,12 +243,13 @@ def check(run, given, bench, registers):
     model = Model(registers)
     seen, bus = fields(run["o"], bench.seen), fields(given["bus"], BUS)
     strobes = np.asarray(given["strobes"]).tolist()
-    looked = [0, 0]  # what was read, two clocks before it is seen
+    latency = bench.read_latency
+    looked = [0] * (latency - 1)  # what was read, that many clocks before it is seen
     irq = 0
     for clock, (row, transfer) in enumerate(zip(seen, bus, strict=False)):
         assert row["irq"] == irq, clock
         irq = model.interrupts()
-        assert row["read_data"] == looked[-READ_LATENCY + 1], (clock, hex(4 * bus[clock - READ_LATENCY]["address"]))
+        assert row["read_data"] == looked[-latency + 1], (clock, hex(4 * bus[clock - latency]["address"]))
         before = bus[clock - 1]
         read = 4 * before["address"] if clock and before["read"] else None
         write = (4 * transfer["address"], int(transfer["write_data"])) if transfer["write"] else None
