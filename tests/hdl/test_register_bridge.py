@@ -54,10 +54,10 @@ def test_both_sides(simulator, idle, resets):
 
 
 def test_clocks(simulator):
-    """A write is answered 1 clock after it begins, a read 3; the host is served when the processor leaves a gap."""
+    """A write is answered 1 clock after it begins, a read 4; the host is served when the processor leaves a gap."""
     write, read = (2, 1, 5, 1, 15, 9), (0, 0, 6, 1, 15, 0)
     done, trace = run(simulator, 30, {"data": [write, read, read], "host": [write, read]})
-    assert [clock for clock, _, _ in done["data"]] == [3, 7, 11]
-    assert [clock for clock, _, _ in done["host"]] == [13, 17]
-    assert np.flatnonzero(trace["bus.write"]).tolist() == [3, 13]
-    assert np.flatnonzero(trace["bus.read"]).tolist() == [5, 9, 15]
+    assert [clock for clock, _, _ in done["data"]] == [3, 8, 13]
+    assert [clock for clock, _, _ in done["host"]] == [15, 20]
+    assert np.flatnonzero(trace["bus.write"]).tolist() == [3, 15]
+    assert np.flatnonzero(trace["bus.read"]).tolist() == [5, 10, 17]

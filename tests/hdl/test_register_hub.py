@@ -14,7 +14,7 @@ SLAVES = {name: (offset // 4, entry.addr_width) for name, (offset, entry) in sys
 
 
 def test_transfers(simulator):
-    """Random ones and those at the ends of every slave, one in every clock; what peripherals read comes a clock later."""
+    """Random ones and those at the ends of every slave, one a clock; what peripherals read comes a clock later."""
     random = np.random.default_rng(4)
     edges = [start + step for start, bits in SLAVES.values() for step in (0, 1, (1 << bits) - 1, 1 << bits)]
     address = np.concatenate([edges * 8, random.integers(0, 1 << 15, 500)])
