@@ -2,15 +2,19 @@
 
 import pathlib
 
+import numpy as np
+
 from firmware.reference.sentence import parse
 from hdl.boards.emit import board_verilog
 from hdl.system.cpu import cpu_verilog
+from sim.models.painter import paint
+from sim.models.sensor import ModelSensor
 from sim.results import Settings
 from tests.hdl import harness
 from tests.system.firmware_bench import found, frame_lines
 from tests.system.serial_line import levels, received
 
-__all__ = ["check_frame", "simulate_board", "told_lines"]
+__all__ = ["check_frame", "expected_screen", "simulate_board", "told_lines"]
 
 CELLS = pathlib.Path(__file__).parents[2] / "sim" / "boards"
 
@@ -20,6 +24,15 @@ def simulate_board(board, name, simulator, arrays, *, cells, size):
     texts = [(CELLS / f"{cell}.v").read_text() for cell in (*cells, f"{name}_bench")]
     verilog = "\n".join([board_verilog(board, name), cpu_verilog(), *texts])
     return harness.simulate(f"{name}_bench", verilog, simulator, arrays, size=size, testbench=f"tests.boards.tb_{name}")
+
+
+def expected_screen(picture, mode, settings=Settings()):  # noqa: B008 - frozen
+    """What the display makes of what the model finds in a grey or coloured picture."""
+    rows, columns = picture.shape[:2]
+    (result,) = ModelSensor(columns, rows).run([picture], settings)
+    corners = np.stack([result.corners["x"], result.corners["y"]], axis=1)
+    lists = {"boxes": result.blobs["box"], "corners": corners, "markers": result.markers["vertices"]}
+    return paint(columns, rows, mode.columns, mode.rows, **lists)
 
 
 def told_lines(captured, period_ns, divisor):
