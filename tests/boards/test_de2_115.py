@@ -64,7 +64,7 @@ def play(simulator, program, pictures, camera, **firmware):
     }
     for number, picture in enumerate(pictures):
         arrays[f"picture.{number}"] = np.repeat(picture[..., None], 3, axis=2)
-    return simulate_board(board, "de2_115", simulator, arrays, cells=["altpll"], size=f"{columns}x{rows}")
+    return simulate_board(board, "de2_115", simulator, arrays, size=f"{columns}x{rows}")
 
 
 def decimal(segments, places):

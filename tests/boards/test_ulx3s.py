@@ -9,7 +9,6 @@ from build.ulx3s import bitstream
 from firmware.layout import settings_bytes
 from firmware.reference import Camera
 from firmware.toolchain.images import build
-from hdl.boards.emit import board_verilog
 from hdl.boards.ulx3s.pins import PINS, constraints
 from hdl.boards.ulx3s.top import Ulx3s
 from hdl.config import SensorConfig
@@ -18,7 +17,7 @@ from sim.models.dvi import DviMonitor
 from sim.models.ov7670 import Ov7670Camera
 from sim.models.rgb565 import as_received
 from sim.models.vga import VgaMonitor
-from tests.boards.board_bench import check_frame, expected_screen, simulate_board, told_lines
+from tests.boards.board_bench import check_frame, emitted, expected_screen, simulate_board, told_lines
 from tests.boards.tb_ulx3s import Op
 from tests.shapes import marker_frame
 
@@ -53,7 +52,7 @@ def play(simulator, program, pictures):
     }
     for number, picture in enumerate(pictures):
         arrays[f"picture.{number}"] = picture
-    return simulate_board(board, "ulx3s", simulator, arrays, cells=["ehxplll", "oddrx1f"], size=f"{COLUMNS}x{ROWS}")
+    return simulate_board(board, "ulx3s", simulator, arrays, size=f"{COLUMNS}x{ROWS}")
 
 
 def shown(cable):
@@ -99,8 +98,7 @@ def test_pins():
     located = re.findall(r'LOCATE COMP "([^"]+)" SITE "([^"]+)";', text)
     assert [ball for _, ball in located] == balls
     assert sorted(re.findall(r'IOBUF PORT "([^"]+)" [^;]*IO_TYPE=\w+', text)) == sorted(bit for bit, _ in located)
-    board = Ulx3s(config=SensorConfig(width=64, height=48))
-    header = re.search(r"^module ulx3s\((.*?)\);", board_verilog(board, "ulx3s"), re.MULTILINE | re.DOTALL)[1]
+    header = re.search(r"^module ulx3s\((.*?)\);", emitted("ulx3s"), re.MULTILINE | re.DOTALL)[1]
     assert sorted(re.findall(r"\w+", header)) == sorted(PINS)
 
 
