@@ -1,5 +1,6 @@
 """The ULX3S in cocotb: pictures of an OV7670 that had to be set up, poses on the serial line, and DVI on a monitor."""
 
+import json
 import re
 
 import numpy as np
@@ -102,9 +103,31 @@ def test_pins():
     assert sorted(re.findall(r"\w+", header)) == sorted(PINS)
 
 
+#: A net has many names, and nextpnr's report any of them.
+NETLIST = {
+    "modules": {
+        "EHXPLLL": {"attributes": {"blackbox": 1}},
+        "rasterpose_ulx3s": {
+            "attributes": {"top": 1},
+            "cells": {
+                "clocks.pll": {"type": "EHXPLLL", "connections": {"CLKOP": [8], "CLKOS": [29], "CLKOS2": [34]}},
+                "other": {"type": "TRELLIS_FF", "connections": {"CLK": [34]}},
+            },
+            "netnames": {
+                "clocks.shift": {"bits": [8]},
+                "cam_xclk": {"bits": [29]},
+                "camera.crossing.clk": {"bits": [34]},
+                "system$110.clk": {"bits": [34]},
+                "led": {"bits": ["0", 7]},
+                "cam_pclk": {"bits": [2]},
+            },
+        },
+    }
+}
 REPORT = {
     "fmax": {
-        "$glbnet$clocks_system": {"achieved": 61.239, "constraint": 50.0},
+        "$glbnet$system$110.clk": {"achieved": 61.239, "constraint": 50.0},
+        "$glbnet$cam_xclk$TRELLIS_IO_OUT": {"achieved": 101.7, "constraint": 25.0},
         "$glbnet$cam_pclk$TRELLIS_IO_IN": {"achieved": 24.9, "constraint": 25.0},
     },
     "utilization": {"TRELLIS_COMB": {"used": 30000, "available": 83640}, "EXTREFB": {"used": 0, "available": 2}},
@@ -112,8 +135,12 @@ REPORT = {
 
 
 def test_report():
-    result = bitstream.read_report(REPORT, 7)
-    assert result.clocks == {"clocks_system": (61.24, 50.0), "cam_pclk": (24.9, 25.0)}
+    names = bitstream.clock_names(NETLIST)
+    assert names == {
+        "clocks.shift": "shift", "cam_xclk": "pixel", "camera.crossing.clk": "system", "system$110.clk": "system",
+    }  # fmt: skip
+    result = bitstream.read_report(REPORT, 7, names)
+    assert result.clocks == {"system": (61.24, 50.0), "pixel": (101.7, 25.0), "cam_pclk": (24.9, 25.0)}
     assert result.cells == {"TRELLIS_COMB": (30000, 83640)} and result.missed == ["cam_pclk"]
 
 
@@ -121,9 +148,13 @@ def test_timing_that_is_not_met(monkeypatch, tmp_path):
     """All seeds are tried, and then there is no bitstream, but a message."""
     tried = []
     monkeypatch.setattr(bitstream, "_write_sources", lambda folder: None)
-    monkeypatch.setattr(bitstream, "netlist", lambda *arguments: None)
     monkeypatch.setattr(
-        bitstream, "_place", lambda folder, seed: tried.append(seed) or bitstream.read_report(REPORT, seed)
+        bitstream, "netlist", lambda name, files, folder: (folder / f"{name}.json").write_text(json.dumps(NETLIST))
+    )
+    monkeypatch.setattr(
+        bitstream,
+        "_place",
+        lambda folder, seed, names: tried.append(seed) or bitstream.read_report(REPORT, seed, names),
     )
     monkeypatch.setattr(bitstream.tools, "ecppack", lambda *arguments: pytest.fail("must not be called"))
     with pytest.raises(
