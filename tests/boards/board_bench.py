@@ -18,7 +18,7 @@ from tests.hdl import harness
 from tests.system.firmware_bench import found, frame_lines
 from tests.system.serial_line import levels, received
 
-__all__ = ["CELLS", "check_frame", "emitted", "expected_screen", "models", "simulate_board", "told_lines"]
+__all__ = ["CELLS", "check_frame", "decimal", "emitted", "expected_screen", "models", "simulate_board", "told_lines"]
 
 #: Vendors' cells that each board has.
 CELLS = {"de2_115": ("altpll",), "ulx3s": ("ehxplll", "oddrx1f")}
@@ -42,6 +42,12 @@ def simulate_board(board, name, simulator, arrays, *, size):
     texts = models(*CELLS[name], f"{name}_bench").values()
     verilog = "\n".join([board_verilog(board, name), cpu_verilog(), *texts])
     return harness.simulate(f"{name}_bench", verilog, simulator, arrays, size=size, testbench=f"tests.boards.tb_{name}")
+
+
+def decimal(segments, places):
+    """The number that digits show; places from the lowest."""
+    shapes = {0x3F: 0, 0x06: 1, 0x5B: 2, 0x4F: 3, 0x66: 4, 0x6D: 5, 0x7D: 6, 0x07: 7, 0x7F: 8, 0x6F: 9}
+    return sum(shapes[~(segments >> 7 * place) & 0x7F] * 10**power for power, place in enumerate(places))
 
 
 def expected_screen(picture, mode, settings=Settings()):  # noqa: B008 - frozen

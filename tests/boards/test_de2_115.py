@@ -23,7 +23,7 @@ from sim.models.d5m import D5mCamera
 from sim.models.vga import VgaMonitor
 from sim.results import Settings
 from sim.scene import random_marker_scene, render
-from tests.boards.board_bench import check_frame, expected_screen, simulate_board, told_lines
+from tests.boards.board_bench import check_frame, decimal, expected_screen, simulate_board, told_lines
 from tests.boards.tb_de2_115 import Op
 from tests.hdl import harness
 from tests.shapes import marker_frame
@@ -65,12 +65,6 @@ def play(simulator, program, pictures, camera, **firmware):
     for number, picture in enumerate(pictures):
         arrays[f"picture.{number}"] = np.repeat(picture[..., None], 3, axis=2)
     return simulate_board(board, "de2_115", simulator, arrays, size=f"{columns}x{rows}")
-
-
-def decimal(segments, places):
-    """The number that digits show; places from the lowest."""
-    shapes = {0x3F: 0, 0x06: 1, 0x5B: 2, 0x4F: 3, 0x66: 4, 0x6D: 5, 0x7D: 6, 0x07: 7, 0x7F: 8, 0x6F: 9}
-    return sum(shapes[~(segments >> 7 * place) & 0x7F] * 10**power for power, place in enumerate(places))
 
 
 def check_camera(captured):
