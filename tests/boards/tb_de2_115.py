@@ -1,7 +1,8 @@
-"""Cocotb testbench of the DE2-115: a D5M that wants to be set up, a display, and somebody at the serial line.
+"""Cocotb testbench of the DE2-115: a D5M that wants to be set up, two displays, and somebody at the serial line.
 
 It runs inside the simulator and plays what test_de2_115.py wrote into STREAM_FOLDER. The camera's clock and the board's
-know nothing of each other. Inputs change when the clock falls; to the display a pin changes when the clock rises.
+know nothing of each other. Inputs change when the clock falls; to the display a pin changes when the clock rises. The
+monitor's converter takes its pins when VGA_CLK rises.
 """
 
 import enum
@@ -31,6 +32,7 @@ class Op(enum.IntEnum):
     LINES = 5  #: wait until so many lines were sent, for so many clocks at most
     SHOWN = 6  #: wait until the display has received so many bytes, for so many clocks at most
     LOOK = 7  #: log the lights, the digits and how often the camera was written to
+    WATCH = 8  #: the monitor's cable, for so many clocks of VGA_CLK
 
 
 class _Bench(BoardBench):
@@ -38,8 +40,9 @@ class _Bench(BoardBench):
         period_ns = int(plan["period_ns"])
         camera = D5mCamera(blank=int(plan["blank"]))
         super().__init__(dut, camera, period_ps=1000 * period_ns, divisor=int(plan["divisor"]))
-        self.plan, self.period, self.pixel_ps = plan, period_ns, int(plan["pixel_ps"])
+        self.plan, self.period = plan, period_ns
         self.falling, self.panel = FallingEdge(dut.clock_50), Hd44780()
+        self.seen, self.clock_at_change = [], []
 
     async def clocks(self, count):
         """To a falling edge."""
@@ -69,19 +72,28 @@ class _Bench(BoardBench):
                 await First(*(handle.value_change for handle in handles.values()), dut.lcd_in.value_change)
 
     async def play_picture(self, number, rows):
-        dut, half = self.dut, Timer(self.pixel_ps // 2, unit="ps")
-        picture = self.plan[f"picture.{number}"]
-        pins = self.camera.play([picture])
+        """Pins change when PIXLCLK falls."""
+        dut, falling, before = self.dut, FallingEdge(self.dut.pixlclk), None
+        pins = self.camera.play([self.plan[f"picture.{number}"]])
         count = len(pins["data"])
         if rows:
             count = np.flatnonzero(np.diff(pins["lval"], prepend=0) == 1)[rows]
-        for data, fval, lval in zip(*(pins[name][:count].tolist() for name in ("data", "fval", "lval")), strict=True):
-            dut.data.value, dut.fval.value, dut.lval.value = data, fval, lval
-            await half
-            dut.pixlclk.value = 1
-            await half
-            dut.pixlclk.value = 0
+        for data, *levels in zip(*(pins[name][:count].tolist() for name in ("data", "fval", "lval")), strict=True):
+            await falling
+            dut.data.value = data
+            if levels != before:
+                dut.fval.value, dut.lval.value = before = levels
+        await falling
         dut.fval.value = dut.lval.value = 0
+
+    async def watch(self, count):
+        vga, taken = self.dut.vga, RisingEdge(self.dut.vga_clk)
+        for _ in range(20):
+            await vga.value_change
+            self.clock_at_change.append(int(self.dut.vga_clk.value))
+        for _ in range(count):
+            await taken
+            self.seen.append(int(vga.value))
 
     async def play(self):
         dut = self.dut
@@ -104,16 +116,19 @@ class _Bench(BoardBench):
                 case Op.LOOK:
                     lights, leds = int(dut.ledg.value), int(dut.ledr.value)
                     self.log.append((lights, leds, int(dut.hex.value), len(self.camera.bus.writes)))
+                case Op.WATCH:
+                    await self.watch(first)
 
 
 @cocotb.test()
 async def play(dut):
     folder, plan = load_plan()
     bench = _Bench(dut, plan)
-    for name in ("sw", "lcd_out", "data", "fval", "lval", "pixlclk", "scl_pulled", "sda_pulled"):
+    for name in ("sw", "lcd_out", "data", "fval", "lval", "scl_pulled", "sda_pulled"):
         getattr(dut, name).value = 0
     dut.key.value, dut.rxd.value = 3, 1
     Clock(dut.clock_50, bench.period, unit="ns").start(start_high=False)
+    Clock(dut.pixlclk, int(plan["pixel_ps"]), unit="ps").start(start_high=False)
     await bench.clocks(2)
     for task in (bench.bus(), bench.listen(), bench.count_lines(), bench.show()):
         cocotb.start_soon(task)
@@ -129,6 +144,8 @@ async def play(dut):
         line=np.array(bench.line, np.int64),
         end=round(get_sim_time("ns")) // bench.period,
         lines=np.array(bench.panel.lines),
+        seen=np.array(bench.seen, np.uint32),
+        clock_at_change=np.array(bench.clock_at_change),
         writes=np.array(bench.camera.bus.writes, np.int64).reshape(-1, 3),
         xclkin_ns=np.diff(edges[1:]),
     )

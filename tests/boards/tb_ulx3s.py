@@ -9,7 +9,7 @@ import enum
 import cocotb
 import numpy as np
 from cocotb.clock import Clock
-from cocotb.triggers import RisingEdge, Timer
+from cocotb.triggers import FallingEdge
 from cocotb.utils import get_sim_time
 
 from sim.models.ov7670 import Ov7670Camera
@@ -23,7 +23,7 @@ class Op(enum.IntEnum):
     CAMERA = 0  #: wait until the camera is set up, for so many clocks at most
     PLAY = 1  #: the camera shows this picture
     LINES = 2  #: wait until so many lines were sent, for so many clocks at most
-    RECORD = 3  #: so many bits of the cable
+    RECORD = 3  #: so many times ten bits of the cable
     LOOK = 4  #: log the lights
     RESET = 5  #: the button, for so many clocks
 
@@ -32,26 +32,23 @@ class _Bench(BoardBench):
     def __init__(self, dut, plan):
         camera = Ov7670Camera(blank=int(plan["blank"]))
         super().__init__(dut, camera, period_ps=int(plan["period_ps"]), divisor=int(plan["divisor"]))
-        self.plan, self.pixel_ps, self.bits = plan, int(plan["pixel_ps"]), []
+        self.plan, self.cable = plan, []
 
     async def play_picture(self, number):
-        dut, half = self.dut, Timer(self.pixel_ps // 2, unit="ps")
+        """Pins change when PCLK falls."""
+        dut, falling, before = self.dut, FallingEdge(self.dut.pclk), None
         pins = self.camera.play([self.plan[f"picture.{number}"]])
-        for data, href, vsync in zip(*(pins[name].tolist() for name in ("data", "href", "vsync")), strict=True):
-            dut.data.value, dut.href.value, dut.vsync.value = data, href, vsync
-            await half
-            dut.pclk.value = 1
-            await half
-            dut.pclk.value = 0
+        for data, *levels in zip(*(pins[name].tolist() for name in ("data", "href", "vsync")), strict=True):
+            await falling
+            dut.data.value = data
+            if levels != before:
+                dut.href.value, dut.vsync.value = before = levels
 
     async def record(self, count):
-        """Bits of the cable, each in its middle."""
-        gpdi, bit = self.dut.gpdi, Timer(self.period_ps // 5, unit="ps")
-        await RisingEdge(self.dut.xclk)  # In phase with the cable.
-        await Timer(self.period_ps // 10, unit="ps")
+        ten_bits, received = self.dut.ten_bits, self.dut.received.value_change
         for _ in range(count):
-            self.bits.append(int(gpdi.value))
-            await bit
+            await received
+            self.cable.append(int(ten_bits.value))
 
     async def play(self):
         for op, first, second in self.plan["program"].tolist():
@@ -76,10 +73,11 @@ class _Bench(BoardBench):
 async def play(dut):
     folder, plan = load_plan()
     bench = _Bench(dut, plan)
-    for name in ("fire", "data", "href", "vsync", "pclk", "scl_pulled", "sda_pulled"):
+    for name in ("fire", "data", "href", "vsync", "scl_pulled", "sda_pulled"):
         getattr(dut, name).value = 0
     dut.reset_n.value = 1
     Clock(dut.oscillator, bench.period_ps // 10, unit="ps").start(start_high=False)
+    Clock(dut.pclk, int(plan["pixel_ps"]), unit="ps").start(start_high=False)
     await bench.clocks(100)
     for task in (bench.bus(), bench.listen(), bench.count_lines()):
         cocotb.start_soon(task)
@@ -90,6 +88,6 @@ async def play(dut):
         log=np.array(bench.log, np.int64),
         line=np.array(bench.line, np.int64),
         end=round(get_sim_time("ns")) * 1000 // bench.period_ps,
-        bits=np.array(bench.bits, np.uint8),
+        cable=np.array(bench.cable, np.uint64),
         writes=np.array(bench.camera.bus.writes, np.int64).reshape(-1, 3),
     )

@@ -107,8 +107,8 @@ def test_constraints_name_what_exists(project):
     bits = port_bits(project)
     calls = tcl(
         (project / f"{NAME}.sdc").read_text(), "create_clock", "derive_pll_clocks", "derive_clock_uncertainty",
-        "set_clock_groups", "set_max_skew", "set_input_delay", "set_false_path", "get_ports", "get_clocks",
-        "get_registers",
+        "create_generated_clock", "set_clock_groups", "set_max_skew", "set_input_delay", "set_output_delay",
+        "set_false_path", "get_ports", "get_clocks", "get_pins", "get_registers",
     )  # fmt: skip
     constrained = {}
     for name, *arguments in calls:
@@ -125,9 +125,18 @@ def test_constraints_name_what_exists(project):
     assert clocks == {"CLOCK_50", "D5M_PIXLCLK"}
     grouped = [call[1] for call in calls if call[0] == "get_clocks"]
     assert {clock for clock in grouped if "pll" not in clock} == clocks
-    used = re.findall(r"\.port_clk(\d)\(\"PORT_USED\"\)", (project / f"{NAME}.v").read_text())
-    assert sorted(clock for clock in grouped if "pll" in clock) == [f"*|pll1|clk[{number}]" for number in sorted(used)]
     verilog = (project / f"{NAME}.v").read_text()
+    used = sorted(re.findall(r"\.port_clk(\d)\(\"PORT_USED\"\)", verilog))
+    in_groups = sorted(clock for group in grouped for clock in group.split() if clock not in clocks)
+    assert in_groups == [*(f"*|pll1|clk[{number}]" for number in used), "VGA_CLK"]
+    (forwarded,) = (call[1:] for call in calls if call[0] == "create_generated_clock")
+    (source,) = (call[1] for call in calls if call[0] == "get_pins")
+    assert forwarded == ["-name", "VGA_CLK", "-source", source, "-invert", "VGA_CLK"]
+    assert f"{source} VGA_CLK" in grouped
+    delayed = {tuple(call[1:5]): set(call[5].split()) for call in calls if call[0] == "set_output_delay"}
+    assert delayed.keys() == {("-clock", "VGA_CLK", "-max", "0.5"), ("-clock", "VGA_CLK", "-min", "-1.5")}
+    monitor = {re.sub(r"\[\d+\]", "[*]", bit) for bit in bits if bit.startswith("VGA_")}
+    assert all(ports == monitor - {"VGA_CLK", "VGA_SYNC_N"} for ports in delayed.values())
     for call in calls:
         if call[0] == "get_registers":
             register = re.search(r"(\w+)\[", call[1]).group(1)

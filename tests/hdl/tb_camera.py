@@ -29,6 +29,7 @@ class Op(enum.IntEnum):
     HOLD = 6  #: somebody holds SCL (0), SDA (1) or nothing (2) low from now on
     VALUES = 7  #: the live values from now on
     PLAY = 8  #: pins, by their number, with a clock of so many ps
+    CUT = 9  #: in what is played next both domains are reset, from a clock of the camera on for so many
 
 
 class _Bench:
@@ -40,6 +41,7 @@ class _Bench:
         self.slave = I2cSlave(first, register_bytes=sizes[0], value_bytes=sizes[1], timing=timing)
         self.pins = str(plan["pins"])
         self.held, self.log, self.beats, self.lost = 2, [], [], 0
+        self.cut = range(0)
         self.changed = Event()  # of who else holds a line
 
     def handle(self, name):
@@ -96,9 +98,12 @@ class _Bench:
         handles = [getattr(self.dut, name) for name in names]
         columns = [self.plan[f"{number}.{name}"].tolist() for name in names]
         clock, half = self.dut.pixel_clk, Timer(period_ps // 2, unit="ps")
-        for levels in zip(*columns, strict=True):
+        for number, levels in enumerate(zip(*columns, strict=True)):
             for handle, level in zip(handles, levels, strict=True):
                 handle.value = level
+            if number in (self.cut.start, self.cut.stop):
+                self.slave.master_is_reset = is_reset = number in self.cut
+                self.dut.rst.value = self.dut.pixel_rst.value = is_reset
             await half
             clock.value = 1
             await half
@@ -141,6 +146,9 @@ class _Bench:
                     dut.values.value = first
                 case Op.PLAY:
                     await self.video(first, second)
+                    self.cut = range(0)
+                case Op.CUT:
+                    self.cut = range(first, first + second)
             self.log.append(self.state())
 
 

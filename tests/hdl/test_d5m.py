@@ -19,6 +19,8 @@ SYNC_PS = 10**12 // CLOCK_HZ
 #: PIXCLK of up to twice the system's clock brings at most one pixel a clock.
 FAST_PS, SLOW_PS = 251_000, 1_733_000
 EXPOSURE, GAIN = 300, 12
+#: Clocks of the camera in which there is a reset, in the middle of a row.
+CUT = (400, 12)
 
 
 def pictures(count, seed):
@@ -47,10 +49,12 @@ def run(request):
         D5mCamera().play(pictures(1, 0)),
         *(D5mCamera(blank=5).play(shown, is_set_up=True, order="GRBG") for shown, _ in SEQUENCES.values()),
         broken(),
+        D5mCamera(blank=5).play(pictures(2, 5), is_set_up=True, order="GRBG"),
     ]
     program = [
         (Op.VALUES, EXPOSURE | GAIN << 16), (Op.RESET, 2), (Op.PLAY, 0, FAST_PS), (Op.FINISH, 0, 60_000),
         (Op.PLAY, 1, FAST_PS), (Op.PLAY, 2, SLOW_PS), (Op.PLAY, 3, FAST_PS),
+        (Op.CUT, *CUT), (Op.PLAY, 4, FAST_PS), (Op.FINISH, 0, 60_000),
     ]  # fmt: skip
     component = D5m(width=COLUMNS, clock_hz=CLOCK_HZ, tick_us=TICK_US, depth=16)
     return *play(component, "d5m", request.param, program, table=d5m_table(), sync_ps=SYNC_PS, videos=videos), videos
@@ -102,6 +106,21 @@ def test_broken_video_goes_on_as_it_is(run):
     assert (seen[known] == expected[known]).all() and known.mean() > 0.5
     assert (sof == expected_sof).all() and (eol == expected_eol).all()
     assert check_errors(sof, eol) >= 3
+
+
+def test_reset_in_the_middle_of_a_picture(run):
+    """What came before is right, the rest of that picture is missing, the next is whole, and the camera is set up."""
+    seen, sof, eol = part(run, 8)
+    expected = np.stack([as_received(picture) for picture in pictures(2, 5)]).reshape(-1, 3)
+    size = COLUMNS * ROWS
+    before = len(seen) - size
+    assert COLUMNS < before < size - COLUMNS
+    assert (seen[:before] == expected[:before]).all() and (seen[before:] == expected[size:]).all()
+    index = np.append(np.arange(before), np.arange(size))
+    assert (sof == (index == 0)).all() and (eol == (index % COLUMNS == COLUMNS - 1)).all()
+    states, writes, *_ = run
+    again = len(writes) // 2
+    assert states[9].done and [write[1:] for write in writes[again:]] == [write[1:] for write in writes[:again]]
 
 
 @pytest.mark.parametrize("is_turned", [False, True])

@@ -91,6 +91,22 @@ def test_emitted_verilog(simulator):
     assert_same(run, StreamEngine(DviBench).run(stimulus))
 
 
+def test_reset_in_the_middle(engine, simulator):
+    """Of a row: what is on its way is lost, and the sums begin anew."""
+    given, cut = pixels(900, seed=6), 333
+    given["active"][cut - 20 : cut + 20] = 1
+    stimulus = {"i": pack(PIXEL, **given)}
+    run = cocotb_run(DviBench(), simulator, stimulus, reset_at=[cut])
+    words = fields(run["o"], WORDS)["words"][:, :3]
+    parts = [{name: values[part] for name, values in given.items()} for part in (slice(cut), slice(cut, None))]
+    before, after = (expected(part) for part in parts)
+    assert (words[LATENCY:cut] == before[: cut - LATENCY]).all()
+    assert (words[cut + LATENCY : len(given["b"]) + LATENCY] == after).all()
+    assert (after[:20] != expected(given)[cut : cut + 20]).any()
+    engine.reset()
+    assert_same(run, engine.run(stimulus, reset_at=[cut]))
+
+
 def test_what_is_sent_is_what_is_received():
     given = pixels(5_000, seed=3)
     words = expected(given)

@@ -17,6 +17,8 @@ CLOCK_HZ, TICK_US = 2_000_000, 100
 SYNC_PS = 10**12 // CLOCK_HZ
 #: PCLK of up to twice the system's clock brings at most one pixel a clock.
 FAST_PS, SLOW_PS = 251_000, 1_733_000
+#: Clocks of the camera in which there is a reset, in the middle of a row.
+CUT = (700, 12)
 
 
 def pictures(count, seed):
@@ -52,10 +54,12 @@ def run(request):
         camera.play(pictures(1, 0)),
         *(camera.play(shown, is_set_up=True) for shown, _ in SEQUENCES.values()),
         broken(pictures(1, 3)[0]),
+        camera.play(pictures(2, 5), is_set_up=True),
     ]
     program = [
         (Op.RESET, 2), (Op.PLAY, 0, FAST_PS), (Op.FINISH, 0, 60_000),
         (Op.PLAY, 1, FAST_PS), (Op.PLAY, 2, SLOW_PS), (Op.PLAY, 3, FAST_PS),
+        (Op.CUT, *CUT), (Op.PLAY, 4, FAST_PS), (Op.FINISH, 0, 60_000),
     ]  # fmt: skip
     component = Ov7670(clock_hz=CLOCK_HZ, tick_us=TICK_US, depth=16)
     states, writes, beats = play(
@@ -81,9 +85,11 @@ def test_set_up(run):
     states, writes, *_ = run
     camera = Ov7670Camera()
     assert not camera.is_set_up
-    camera.bus.writes.extend(writes)
+    camera.bus.writes.extend(writes[: states[2].writes])
     assert camera.is_set_up and states[2].done and not states[2].failed
-    assert [write[1:] for write in writes] == [entry for entry in OV7670_TABLE.entries if isinstance(entry, tuple)]
+    assert [write[1:] for write in writes[: states[2].writes]] == [
+        entry for entry in OV7670_TABLE.entries if isinstance(entry, tuple)
+    ]
     camera.bus.writes.append((0, 0x12, 0x80))
     assert not camera.is_set_up
 
@@ -105,6 +111,21 @@ def test_broken_video_goes_on_as_it_is(run):
     assert (seen == expected).all() and (sof == expected_sof).all() and (eol == expected_eol).all()
     framed = framer(sof, eol, COLUMNS, ROWS, width=COLUMNS, height=ROWS)
     assert sum(len(found) for found in framed.errors.values()) >= 2 and not framed.last.any()
+
+
+def test_reset_in_the_middle_of_a_picture(run):
+    """What came before is right, the rest of that picture is missing, the next is whole, and the camera is set up."""
+    seen, sof, eol = part(run, 7)
+    expected = np.stack([as_received(picture) for picture in pictures(2, 5)]).reshape(-1, 3)
+    size = COLUMNS * ROWS
+    before = len(seen) - size
+    assert COLUMNS < before < size - COLUMNS
+    assert (seen[:before] == expected[:before]).all() and (seen[before:] == expected[size:]).all()
+    index = np.append(np.arange(before), np.arange(size))
+    assert (sof == (index == 0)).all() and (eol == (index % COLUMNS == COLUMNS - 1)).all()
+    states, writes, *_ = run
+    again = len(writes) // 2
+    assert states[8].done and [write[1:] for write in writes[again:]] == [write[1:] for write in writes[:again]]
 
 
 def test_colours_keep_full_scale():

@@ -16,7 +16,7 @@ from hdl.config import SensorConfig
 from hdl.emit import AVALON, SYSTEM
 from hdl.regs.bus import READ_LATENCY
 from hdl.regs.map import avalon_maps
-from tests.hdl.harness import missing, verilator_environment
+from tests.hdl.simulators import missing, verilator_environment
 
 CONFIG = SensorConfig(width=64, height=48)
 #: Role, direction and width of every port, written by hand from the Avalon Interface Specifications.

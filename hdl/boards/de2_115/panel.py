@@ -36,7 +36,7 @@ class Panel(wiring.Component):
     key, switches : :py:`In(1)`, :py:`In(18)`
         May change at any time; ``key`` is high when it is pressed.
     host : :py:`Out(MemoryBus())`
-    camera_done, camera_failed, lost, irq : :py:`In(1)`
+    camera_done, camera_failed, lost, late, irq : :py:`In(1)`
     pixel_clock : :py:`In(1)`
         Changes now and then if the camera's clock runs.
     restart : :py:`Out(1)`
@@ -70,6 +70,7 @@ class Panel(wiring.Component):
                 "camera_done": In(1),
                 "camera_failed": In(1),
                 "lost": In(1),
+                "late": In(1),
                 "irq": In(1),
                 "pixel_clock": In(1),
                 "restart": Out(1),
@@ -102,19 +103,20 @@ class Panel(wiring.Component):
         clocks, second_ends, heart = Signal(range(self._second)), Signal(), Signal()
         at_start, rate = Signal(8), Signal(8)
         clock_before, moved, runs = Signal(), Signal(), Signal()
-        was_lost = Signal()
+        was_lost, was_late = Signal(), Signal()
         m.d.comb += second_ends.eq(clocks == self._second - 1)
         m.d.sync += [
             clocks.eq(clocks + 1),
             clock_before.eq(self.pixel_clock),
             moved.eq(moved | (self.pixel_clock ^ clock_before)),
             was_lost.eq(was_lost | self.lost),
+            was_late.eq(was_late | self.late),
         ]
         with m.If(second_ends):
             m.d.sync += [clocks.eq(0), heart.eq(~heart), rate.eq(frame[:8] - at_start), at_start.eq(frame[:8])]
             m.d.sync += [runs.eq(moved), moved.eq(0)]
         m.d.comb += self.lights.eq(
-            Cat(self.camera_done, self.camera_failed, was_lost, Const(0, 3), self.irq, heart, runs)
+            Cat(self.camera_done, self.camera_failed, was_lost, was_late, Const(0, 2), self.irq, heart, runs)
         )
 
         cut = Signal(16)

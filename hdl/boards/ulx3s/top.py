@@ -27,6 +27,7 @@ from amaranth.lib.cdc import FFSynchronizer
 from amaranth.lib.wiring import connect
 
 from hdl.boards.debounce import Debounce
+from hdl.boards.domains import clocked_by
 from hdl.boards.start import Start
 from hdl.boards.ulx3s.clocks import SYSTEM_HZ, Clocks
 from hdl.boards.ulx3s.gpdi import Gpdi
@@ -116,24 +117,17 @@ class Ulx3s(Elaboratable):
         """Domains ``sync``, ``pixel``, ``shift`` and ``camera``, and clocks without reset for the resets themselves."""
         start = DomainRenamer("always")(self._start)
         m.submodules.start = start
-        for name, clock in (
-            ("sync", clocks.system),
-            ("pixel", clocks.pixel),
-            ("shift", clocks.shift),
-            ("camera", self.ports["cam_pclk"]),
-        ):
-            m.domains += ClockDomain(name, reset_less=name == "shift")
-            m.d.comb += ClockSignal(name).eq(clock)
-            if name in ("pixel", "camera"):
-                pin = f"{name}_pin"
-                m.domains += ClockDomain(pin, reset_less=True)
-                m.d.comb += ClockSignal(pin).eq(clock)
-                m.submodules[f"{name}_reset"] = FFSynchronizer(
-                    self._start.reset, ResetSignal(name), o_domain=pin, init=1
-                )
-        m.domains += ClockDomain("always", reset_less=True)
+        m.domains += [
+            ClockDomain("sync"),
+            ClockDomain("always", reset_less=True),
+            ClockDomain("shift", reset_less=True),
+        ]
+        clocked_by(m, "pixel", clocks.pixel, self._start.reset)
+        clocked_by(m, "camera", self.ports["cam_pclk"], self._start.reset)
         m.d.comb += [
+            ClockSignal("sync").eq(clocks.system),
             ClockSignal("always").eq(clocks.system),
+            ClockSignal("shift").eq(clocks.shift),
             clocks.oscillator.eq(self.ports["clk_25mhz"]),
             self.ports["cam_xclk"].eq(clocks.pixel),
             self._start.ready.eq(clocks.locked & self.ports["btn_pwr_n"]),
