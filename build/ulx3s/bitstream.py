@@ -23,6 +23,10 @@ NAME = "rasterpose_ulx3s"
 DEVICE = "LFE5U-85F-6BG381C"
 SEEDS = (1, 2, 3)
 
+#: What nextpnr is asked for where the system's clock needs 1: it no longer improves what it thinks is fast enough, and
+#: what it thinks before routing is a few per cent too fast.
+_AIM = 1.2
+
 
 class TimingError(Exception):
     """No seed kept all clocks; the message is one line that says which and by how much."""
@@ -67,7 +71,9 @@ def read_report(report, seed, names):
     clocks = {}
     for net, entry in sorted(report["fmax"].items()):
         plain = net.removeprefix("$glbnet$").split("$TRELLIS_IO")[0]
-        clocks[names.get(plain, plain)] = (round(entry["achieved"], 2), round(entry["constraint"], 2))
+        name = names.get(plain, plain)
+        needed = OUTPUTS[name][1] / 1e6 if name in OUTPUTS else entry["constraint"]
+        clocks[name] = (round(entry["achieved"], 2), round(needed, 2))
     cells = {
         name: (entry["used"], entry["available"])
         for name, entry in sorted(report["utilization"].items())
@@ -88,12 +94,20 @@ def _write_sources(folder):
         (folder / name).write_text(text)
 
 
+def _aim(folder, names):
+    """Write the constraint that asks for a faster system clock."""
+    net = next(net for net, name in names.items() if name == "system")
+    megahertz = _AIM * OUTPUTS["system"][1] / 1e6
+    (folder / f"{NAME}.aim.lpf").write_text(f'FREQUENCY NET "{net}" {megahertz:g} MHZ;\n')
+
+
 def _place(folder, seed, names):
     tools.nextpnr_ecp5(
         [
             *PART,
             *ROUTER,
-            *("--json", f"{NAME}.json", "--lpf", f"{NAME}.lpf", "--textcfg", f"{NAME}.config"),
+            *("--json", f"{NAME}.json", "--lpf", f"{NAME}.lpf", "--lpf", f"{NAME}.aim.lpf"),
+            *("--textcfg", f"{NAME}.config"),
             *("--report", "nextpnr.json", "--seed", seed, "--timing-allow-fail"),
         ],
         folder,
@@ -120,6 +134,7 @@ def make(folder, step=lambda text: None):
     step("Yosys: synthesis")
     netlist(NAME, [f"{NAME}.v", "VexRiscv.v"], folder)
     names = clock_names(json.loads((folder / f"{NAME}.json").read_text()))
+    _aim(folder, names)
     tried = []
     for seed in SEEDS:
         step(f"nextpnr: place and route, seed {seed}")
