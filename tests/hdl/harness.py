@@ -23,6 +23,7 @@ from cocotb_tools.runner import get_runner
 
 from hdl import emit
 from sim.engine import Captured, Run
+from sim.engine.build import cached_verilog
 from sim.engine.plan import make_plan
 from sim.engine.ports import describe, resolve
 from tests.hdl.frames import binary_beats, camera_beats, grey_beats, rgb_beats
@@ -65,9 +66,10 @@ def cocotb_run(
     unset = [port.name for port in interface.settings if port.name not in (config or {})]
     if unset:
         raise ValueError(f"Settings without a value: {', '.join(unset)}")
+    is_known = isinstance(block, str)
     arrays = simulate(
         name,
-        emit.to_verilog(component, name),
+        cached_verilog(name, width, height) if is_known else emit.to_verilog(component, name),
         simulator,
         _arrays(interface, plan),
         size=f"{width}x{height}",

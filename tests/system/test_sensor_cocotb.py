@@ -7,6 +7,7 @@ from hdl import emit
 from hdl.config import SensorConfig
 from hdl.regs.map import sensor_map
 from sim.engine import random_idle
+from sim.engine.build import cached_verilog
 from sim.engine.frames import camera_pixels, marker_words
 from sim.models.sensor import ModelSensor
 from tests.hdl import harness
@@ -73,7 +74,7 @@ def play(simulator, size, parts, drain_clocks, verilog=None, **viewer):
     }
     captured = harness.simulate(
         emit.TOP,
-        verilog or emit.emit(emit.TOP, *size),
+        verilog or cached_verilog(emit.TOP, *size),
         simulator,
         {
             "pixels": np.concatenate([*pixels, np.full(drain_clocks, -1)]),
