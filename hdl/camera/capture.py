@@ -1,7 +1,8 @@
 """Pins of a camera with FRAME_VALID and LINE_VALID to samples. All in the camera's clock.
 
 Contract: in each clock in which both are high there is a sample; the first one of a frame is marked ``sof``, the last
-one of a row ``eol``. A frame that ends within a row ends that row.
+one of a row ``eol``. A frame that ends within a row ends that row. After a reset nothing is ``sof`` until a frame
+begins.
 
 Numbers: one sample a clock, 3 clocks after it was at the pins. Pins go into registers first.
 

@@ -103,7 +103,8 @@ def test_from_camera_to_serial_line():
     lens = scenes[0].lens
     camera = Camera(lens.fx, lens.fy, lens.cx, lens.cy)
     program = [
-        (Op.SWITCHES, SWITCHES), (Op.PLAY, 0), (Op.CAMERA, PATIENCE), (Op.LINES, 1, PATIENCE), (Op.LOOK,),
+        (Op.SWITCHES, SWITCHES), (Op.IDLE, 500), (Op.PLAY, 0), (Op.CAMERA, PATIENCE), (Op.LINES, 1, PATIENCE),
+        (Op.LOOK,),
         (Op.PLAY, 0), (Op.LINES, 3, PATIENCE), (Op.WATCH, WATCHED), (Op.PLAY, 1, 100), (Op.PLAY, 1),
         (Op.LINES, 5, PATIENCE), (Op.WATCH, WATCHED), (Op.SHOWN, 8 + 34 + 34, PATIENCE), (Op.LOOK,),
         (Op.KEY, 0b01), (Op.IDLE, 500), (Op.KEY, 0b11), (Op.CAMERA, PATIENCE), (Op.IDLE, 30_000), (Op.LOOK,),
