@@ -83,7 +83,7 @@ module rasterpose_avalon_tb;
       address = place >> 2;
       read = 1;
       @(negedge clk) read = 0;
-      @(negedge clk);
+      repeat (`READ_LATENCY - 1) @(negedge clk);
       words = words + 1;
       if (readdata !== value) begin
         faults = faults + 1;

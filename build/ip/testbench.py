@@ -3,6 +3,7 @@
 import pathlib
 
 from hdl.emit import AVALON
+from hdl.regs.bus import READ_LATENCY
 from hdl.regs.map import avalon_maps
 from sim.engine.frames import marker_words
 from sim.models.avalon_video_input import control_packet, video_packet
@@ -62,7 +63,8 @@ def testbench(config):
     transfers = _transfers(config, result, columns, rows)
     return {
         f"{AVALON}_tb.v": pathlib.Path(__file__).with_name(f"{AVALON}_tb.v").read_text(),
-        "scene.vh": f"`define BEATS {len(beats)}\n`define TRANSFERS {len(transfers)}\n",
+        "scene.vh": f"`define BEATS {len(beats)}\n`define TRANSFERS {len(transfers)}\n"
+        f"`define READ_LATENCY {READ_LATENCY}\n",
         "beats.hex": "".join(f"{end << 25 | start << 24 | data:07x}\n" for data, start, end in beats),
         "transfers.hex": "".join(" ".join(f"{word:08x}" for word in transfer) + "\n" for transfer in transfers),
     }

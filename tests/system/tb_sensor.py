@@ -9,6 +9,7 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import FallingEdge
 
+from hdl.regs.bus import READ_LATENCY
 from tests.hdl.tb_stream import load_plan
 
 _NOTHING = (0, 0, 0, 0)  # address, read, write, write_data
@@ -40,11 +41,11 @@ class _Software:
         yield offset >> 2, 0, 1, value
 
     def _reads(self, offsets):
-        """One word a clock; data come two clocks after their address."""
+        """One word a clock."""
         words = []
-        for k, offset in enumerate([*offsets, None]):
+        for k, offset in enumerate([*offsets, *[None] * (READ_LATENCY - 1)]):
             yield _NOTHING if offset is None else (offset >> 2, 1, 0, 0)
-            if k:
+            if k >= READ_LATENCY - 1:
                 words.append(int(self._data.value))
         return words
 
