@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
+from sim.marker import Lens, marker_pose
 from sim.models.edges import edge_points, smooth
 from sim.models.grey import grey
 from sim.models.matching import find_markers
 from sim.models.refine import OFFSET_SCALE, Quality, refine_markers
 from sim.models.segmentation import find_blobs
 from sim.models.threshold import threshold
-from sim.scene import random_marker_scene, render
+from sim.scene import Scene, random_marker_scene, render
 
 
 def refined(image, level=120):
@@ -76,13 +77,14 @@ def test_light_and_threshold_do_not_matter():
 
 
 def test_flags():
-    """Refined, too near to the border, and clipped."""
-    frame = render(random_marker_scene(3, 160, 120, side_px=(40, 50), tilt_deg=(0, 20), white=255))
-    whole, vertices, flags = refined(frame.image)
-    assert flags.tolist() == [Quality.REFINED | Quality.CLIPPED]
+    """Refined, near to the border, too near for enough points, and clipped."""
+    marker = marker_pose((80, 60), 40, 0, 0, 3, Lens.of_frame(160, 120))
+    image = render(Scene(160, 120, [marker], white=255)).image
+    whole, vertices, flags = refined(image)
+    assert flags.tolist() == [Quality.REFINED | Quality.CLIPPED] and not np.array_equal(whole, vertices)
     x, y = whole[0].min(axis=0)
-    *_, flags = refined(np.ascontiguousarray(frame.image[y - 5 :, x - 5 :]))
+    *_, flags = refined(np.ascontiguousarray(image[y - 6 :, x - 6 :]))
     assert flags.tolist() == [Quality.REFINED | Quality.BORDER | Quality.CLIPPED]
-    whole, vertices, flags = refined(np.ascontiguousarray(frame.image[y - 2 :, x - 2 :]))
-    assert flags[0] & ~Quality.CLIPPED == Quality.FEW | Quality.BORDER
+    whole, vertices, flags = refined(np.ascontiguousarray(image[y - 2 :, x - 2 :]))
+    assert flags[0] & ~int(Quality.CLIPPED) == Quality.FEW | Quality.BORDER
     assert np.array_equal(whole, vertices)
