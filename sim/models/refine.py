@@ -13,8 +13,10 @@ import numba
 import numpy as np
 
 from sim.models.edges import PART_BITS
+from sim.models.matching import MARKER
 
-__all__ = ["OFFSET_SCALE", "REFINEMENT", "RESIDUAL_SCALE", "Quality", "refine", "refine_markers"]
+__all__ = ["OFFSET_SCALE", "REFINED_MARKER", "REFINEMENT", "RESIDUAL_SCALE", "Quality", "refine", "refine_markers",
+           "sub_pixel"]  # fmt: skip
 
 _FRACTION, _SLOPE_FRACTION, _OFFSET_FRACTION = 10, 16, 8
 OFFSET_SCALE = 1 << _OFFSET_FRACTION
@@ -46,6 +48,15 @@ class Quality(enum.IntFlag):
 REFINEMENT = np.dtype([
     ("offsets", np.int32, (4, 2)), ("residual", np.int32), ("points", np.int32), ("flags", np.int32),
 ])  # fmt: skip
+
+
+#: A marker with whole-pixel vertices, and how they were refined.
+REFINED_MARKER = np.dtype(MARKER.descr + REFINEMENT.descr)
+
+
+def sub_pixel(markers):
+    """Vertices (..., 4, 2), px, of :data:`REFINED_MARKER` records: refined where they could be."""
+    return markers["vertices"] + markers["offsets"] / OFFSET_SCALE
 
 
 def _quotient(dividend, divisor):
@@ -193,6 +204,12 @@ def refine(vertices, box, across, down, columns, rows, bits=10):
 
 
 def refine_markers(markers, across, down, columns, rows, bits=10):
-    """The same for each of :data:`sim.models.matching.MARKER` records."""
-    found = [refine(marker["vertices"], marker["box"], across, down, columns, rows, bits) for marker in markers]
-    return np.array(found, REFINEMENT)
+    """:data:`sim.models.matching.MARKER` records as :data:`REFINED_MARKER`; arguments as for :func:`refine`."""
+    result = np.zeros(len(markers), REFINED_MARKER)
+    for name in MARKER.names:
+        result[name] = markers[name]
+    for record in result:
+        found = refine(record["vertices"], record["box"], across, down, columns, rows, bits)
+        for name in REFINEMENT.names:
+            record[name] = found[name]
+    return result

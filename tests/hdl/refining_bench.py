@@ -10,7 +10,7 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 from hdl.pixels import GreyPixel, ItemKind, unstalled
 from hdl.vision.matching.matching import Matching
 from hdl.vision.refining.refining import Refining
-from hdl.vision.refining.shapes import Flags, refined_layout
+from hdl.vision.refining.shapes import FLAGS, refined_layout
 from hdl.vision.segmentation.segmentation import Segmentation
 from hdl.vision.size_filter import SizeFilter
 from hdl.vision.threshold import Threshold
@@ -108,10 +108,10 @@ def refinements(run, size):
     for k in range(4):
         for axis, name in enumerate("xy"):
             whole[:, k, axis] = found[f"v{k + 1}.{name}"]
-            result["offsets"][:, k, axis] = found[f"d{name}{k + 1}"]
-    result["residual"], result["points"] = found["residual"], found["points"]
-    for bit, name in enumerate(Flags.as_shape().members):
-        result["flags"] |= found[f"flags.{name}"].astype(np.int32) << bit
+            result["offsets"][:, k, axis] = found[f"offset{k + 1}.{name}"]
+    result["residual"], result["points"] = found["quality.residual"], found["quality.points"]
+    for bit, name in enumerate(FLAGS):
+        result["flags"] |= found[f"quality.{name}"].astype(np.int32) << bit
     return found["kind"], whole, result, run["o"].clock
 
 

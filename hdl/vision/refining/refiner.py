@@ -14,7 +14,7 @@ from hdl.vision.refining.outline import OUTLINE, Outline
 from hdl.vision.refining.program import Part
 from hdl.vision.refining.scanner import Scanner
 from hdl.vision.refining.sequencer import Sequencer
-from hdl.vision.refining.shapes import OFFSET, Flags, along_bits, refined_layout
+from hdl.vision.refining.shapes import refined_layout
 
 __all__ = ["FEWEST", "Refiner"]
 
@@ -104,9 +104,8 @@ class Refiner(wiring.Component):
         turn, step, side = Signal(2), Signal(2), Signal(2)
         steep = Signal(4)
         final, pause = Signal(), Signal(range(max(OUTLINE, DRAIN) + 1))
-        flags = Signal(Flags)
-        residual, fewest = Signal.like(o.residual), Signal(along_bits(**self._sizes))
-        offsets = [Signal(OFFSET, name=f"{axis}{k}") for k in range(4) for axis in ("dx", "dy")]
+        quality = Signal.like(o.quality)
+        offsets = [Signal.like(o.offset1, name=f"offset{k + 1}") for k in range(4)]
         part_over, failed = Signal(), Signal()
         before = Signal(2)
         one_steep, other_steep = Array(steep)[before], Array(steep)[step]
@@ -143,11 +142,9 @@ class Refiner(wiring.Component):
             sequencer.swap.eq(~one_steep & other_steep),
             part_over.eq(~sequencer.busy),
             *(o[name].eq(marker[name]) for name, _ in marker.shape()),
-            *(o[f"{axis}{k + 1}"].eq(offsets[2 * k + (axis == "dy")]) for k in range(4) for axis in ("dx", "dy")),
-            o.residual.eq(residual),
-            o.points.eq(fewest),
-            o.flags.eq(flags),
-            o.flags.clipped.eq(gather.clipped),
+            *(o[f"offset{k + 1}"].eq(offsets[k]) for k in range(4)),
+            o.quality.eq(quality),
+            o.quality.clipped.eq(gather.clipped),
         ]
         near = Signal(reset_less=True)
         m.d.sync += near.eq(
@@ -156,12 +153,12 @@ class Refiner(wiring.Component):
             | (marker.box_max.x + NEAR + 1 > self.columns)
             | (marker.box_max.y + NEAR + 1 > self.rows)
         )
-        m.d.comb += o.flags.border.eq(near)
+        m.d.comb += o.quality.border.eq(near)
 
         with m.FSM(name="refiner"):
             with m.State("IDLE"):
                 m.d.comb += gather.clear_all.eq(1)
-                m.d.sync += [step.eq(0), flags.eq(0), residual.eq(0), fewest.eq(~0), pause.eq(OUTLINE), final.eq(0)]
+                m.d.sync += [step.eq(0), quality.eq(0), quality.points.eq(~0), pause.eq(OUTLINE), final.eq(0)]
                 m.d.sync += [offset.eq(0) for offset in offsets]
                 with m.If(self.valid):
                     with m.If(marker.kind == ItemKind.ITEM):
@@ -192,13 +189,13 @@ class Refiner(wiring.Component):
             with m.State("JUDGE"):
                 m.next = "FIT"
                 with m.If(scanner.lost):
-                    m.d.sync += flags.lost.eq(1)
+                    m.d.sync += quality.lost.eq(1)
                     m.next = "EMIT"
                 with m.Else():
-                    with m.If(gather.sums.n < fewest):
-                        m.d.sync += fewest.eq(gather.sums.n)
+                    with m.If(gather.sums.n < quality.points):
+                        m.d.sync += quality.points.eq(gather.sums.n)
                     with m.If((gather.sums.n < FEWEST) | (gather.sums.n <= outline.reach)):
-                        m.d.sync += flags.few.eq(1)
+                        m.d.sync += quality.few.eq(1)
                         m.next = "EMIT"
                     with m.Else():
                         m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.FIT)]
@@ -227,8 +224,8 @@ class Refiner(wiring.Component):
                     for k in range(4):
                         with m.If(side == k):
                             m.d.sync += [
-                                offsets[2 * k].eq(Mux(one_steep & other_steep, second, first)),
-                                offsets[2 * k + 1].eq(Mux(one_steep & other_steep, first, second)),
+                                offsets[k].x.eq(Mux(one_steep & other_steep, second, first)),
+                                offsets[k].y.eq(Mux(one_steep & other_steep, first, second)),
                             ]
                     m.d.sync += step.eq(step + 1)
                     m.next = "VERTEX"
@@ -238,10 +235,10 @@ class Refiner(wiring.Component):
                         m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.RESIDUAL)]
                         m.next = "RESIDUAL"
             with m.State("RESIDUAL"), m.If(part_over):
-                m.d.sync += [residual.eq(sequencer.ratio), flags.refined.eq(1)]
+                m.d.sync += [quality.residual.eq(sequencer.ratio), quality.refined.eq(1)]
                 m.next = "EMIT"
             with m.State("ASTRAY"):
-                m.d.sync += flags.astray.eq(1)
+                m.d.sync += quality.astray.eq(1)
                 m.d.sync += [offset.eq(0) for offset in offsets]
                 m.next = "EMIT"
             with m.State("EMIT"):

@@ -28,7 +28,7 @@ class Refining(wiring.Component):
     :class:`~hdl.vision.refining.refiner.Refiner`. Latency: 7 rows and some 2,500 clocks after a marker's last row,
     because the crossings below it must have come; END, SKIP and ABORT wait for the markers before them.
 
-    Memory at 640 x 480: 110 kbit of crossings, 56 kbit of rows, 10 kbit of markers, 10 kbit of tables and program.
+    Memory at 640 x 480: 221 kbit of crossings, 56 kbit of rows, 10 kbit of markers, 10 kbit of tables and program.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Refining(wiring.Component):
     Models: :mod:`sim.models.edges`, :mod:`sim.models.refine`.
     """
 
-    def __init__(self, *, width, height, depth=64, ring_depth=2048):
+    def __init__(self, *, width, height, depth=64, ring_depth=4096):
         self._sizes = {"width": width, "height": height}
         self._depth, self._ring_depth = depth, ring_depth
         super().__init__(

@@ -7,8 +7,19 @@ from amaranth.utils import bits_for
 from hdl.vision.edges.shapes import PART_BITS
 from hdl.vision.matching.geometry import marker_layout
 
-__all__ = ["FRACTION", "OFFSET", "OFFSET_FRACTION", "SLOPE", "SLOPE_FRACTION", "Flags", "along_bits", "line_shape",
-           "refined_layout", "sum_shapes", "word_bits"]  # fmt: skip
+__all__ = [
+    "FLAGS",
+    "FRACTION",
+    "OFFSET",
+    "OFFSET_FRACTION",
+    "SLOPE",
+    "SLOPE_FRACTION",
+    "along_bits",
+    "line_shape",
+    "refined_layout",
+    "sum_shapes",
+    "word_bits",
+]  # fmt: skip
 
 #: Fractional bits of lines and distances, of slopes, of offsets as they are told.
 FRACTION, SLOPE_FRACTION, OFFSET_FRACTION = 10, 16, 8
@@ -18,15 +29,8 @@ SLOPE = signed(SLOPE_FRACTION + 2)
 OFFSET = signed(OFFSET_FRACTION + 4)
 
 
-class Flags(data.Struct):
-    """See :class:`sim.models.refine.Quality`."""
-
-    refined: unsigned(1)  #: the offsets are there; otherwise they are 0
-    few: unsigned(1)  #: a side has too few points
-    lost: unsigned(1)  #: points had been overwritten
-    border: unsigned(1)  #: the marker is so near to the frame's border that points may be missing
-    clipped: unsigned(1)  #: dark or light beside a point is at the end of the scale
-    astray: unsigned(1)  #: a line or a vertex is too far from where it should be
+#: Flags of a marker's quality, see :class:`sim.models.refine.Quality`.
+FLAGS = ("refined", "few", "lost", "border", "clipped", "astray")
 
 
 def along_bits(width, height):
@@ -64,9 +68,13 @@ def refined_layout(width, height):
     return data.StructLayout(
         {
             **{name: field.shape for name, field in marker},
-            **{f"{axis}{k}": OFFSET for k in range(1, 5) for axis in ("dx", "dy")},
-            "residual": unsigned(2 * PART_BITS),
-            "points": unsigned(along_bits(width, height)),
-            "flags": Flags,
+            **{f"offset{k}": data.StructLayout({"x": OFFSET, "y": OFFSET}) for k in range(1, 5)},
+            "quality": data.StructLayout(
+                {
+                    "residual": unsigned(2 * PART_BITS),
+                    "points": unsigned(along_bits(width, height)),
+                    **dict.fromkeys(FLAGS, unsigned(1)),
+                }
+            ),
         }
     )
