@@ -63,6 +63,8 @@ BLOCKS = {
     "segmentation": _block("hdl.vision.segmentation.segmentation:Segmentation", **_FRAME),
     "corners": _block("hdl.vision.corners:Corners", **_FRAME),
     "matching": _block("hdl.vision.matching.matching:Matching", **_FRAME, depth=64),
+    "edges": _block("hdl.vision.edges.edges:Edges", **_FRAME),
+    "refining": _block("hdl.vision.refining.refining:Refining", **_FRAME),
     "size_filter": _block("hdl.vision.size_filter:SizeFilter", **_FRAME),
     "frame_counter": _block("hdl.stores.frame_counter:FrameCounter"),
     "frame_times": _block("hdl.stores.frame_times:FrameTimes"),

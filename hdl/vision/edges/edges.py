@@ -1,0 +1,116 @@
+"""Grey pixels in, places where edges cross rows and columns out."""
+
+from amaranth import Cat, Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out, connect, flipped
+from amaranth.utils import bits_for
+
+from hdl.pixels import GreyPixel, unstalled
+from hdl.vision.delay import Delay
+from hdl.vision.edges.locator import LATENCY, Locator
+from hdl.vision.edges.neighbours import Neighbours
+from hdl.vision.edges.shapes import SMALL, point_layout
+from hdl.vision.edges.smooth import Smooth
+
+__all__ = ["Edges"]
+
+#: A row is settled when its pixel of this number has come: what was found before it started is out by then.
+SETTLED = 15
+
+
+class Edges(wiring.Component):
+    """Finds the crossings of edges between neighbours in a row (across) and in a column (down), to 1/64 pixel.
+
+    ::
+
+        i -> smooth -> neighbours -> locator across -> o_across
+                           |   '---> locator down ---> o_down
+                           '-> row_start, row, settled, complete
+
+    A crossing is found when the last of its neighbours has come: between (x, y) and (x + 1, y) with pixel
+    (x, y) + ACROSS, between (x, y) and (x, y + 1) with pixel (x, y) + DOWN (:mod:`hdl.vision.edges.shapes`). It carries
+    that pixel's place. The 5 pixels along the border have none.
+
+    Throughput: a pixel a clock, and a crossing of either kind with each. Latency: 12 clocks from that pixel.
+    Memory: 11 rows of levels (56 kbit at 640 pixels), two tables of 256 reciprocals. Two multipliers.
+
+    Parameters
+    ----------
+    width, height : int
+        Largest frame, pixels.
+
+    Members
+    -------
+    i : In(unstalled(GreyPixel))
+    threshold, contrast : In(8), bright : In(1)
+        As :class:`~hdl.vision.edges.locator.Locator` says; taken with a frame's first pixel.
+    o_across, o_down : Out(unstalled(point_layout(width, height)))
+    row_start : Out(1), row : Out
+        Strobe: crossings found with pixels of this row may follow from now on, after those of the row before.
+    settled : Out(1)
+        Strobe: all found with pixels of rows before ``row`` are out.
+    complete : Out(1)
+        Strobe: all of a complete frame are out, and none of another.
+
+    Model: :func:`sim.models.edges.edge_points`. Source: the middle between the plateaus is ours; that an edge of a
+    blurred picture lies where the middle is crossed is common knowledge.
+    """
+
+    def __init__(self, *, width, height):
+        self._sizes = {"width": width, "height": height}
+        point = point_layout(width, height)
+        super().__init__(
+            {
+                "i": In(unstalled(GreyPixel)),
+                "threshold": In(8),
+                "contrast": In(8),
+                "bright": In(1),
+                "o_across": Out(unstalled(point)),
+                "o_down": Out(unstalled(point)),
+                "row_start": Out(1),
+                "row": Out(bits_for(height - 1)),
+                "settled": Out(1),
+                "complete": Out(1),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.smooth = smooth = Smooth(width=self._sizes["width"])
+        m.submodules.neighbours = near = Neighbours(**self._sizes)
+        connect(m, flipped(self.i), smooth.i)
+        connect(m, smooth.o, near.i)
+        given = Cat(self.threshold, self.contrast, self.bright)
+        taken, held = (Signal(len(given), name=n, reset_less=True) for n in ("taken", "held"))
+        with m.If(self.i.valid & self.i.p.first):
+            m.d.sync += taken.eq(given)
+        with m.If(self.row_start & (near.y == 0)):  # nothing is found in a frame's first row
+            m.d.sync += held.eq(taken)
+
+        # As long as the last pixel's crossings take, and less than a row of the next frame.
+        left = Signal(range(SETTLED))
+        m.d.comb += [
+            self.row_start.eq(near.valid & (near.x == 0)),
+            self.row.eq(near.y),
+            self.settled.eq(near.valid & (near.x == SETTLED)),
+            self.complete.eq(left == 1),
+        ]
+        with m.If(near.valid & near.last):
+            m.d.sync += left.eq(SETTLED - 3)
+        with m.Elif(left != 0):
+            m.d.sync += left.eq(left - 1)
+
+        m.submodules.place = place = Delay(width=len(near.x) + len(near.y), steps=LATENCY)
+        m.d.comb += place.i.eq(Cat(near.x, near.y))
+        for name, least_x, least_y in (("across", SMALL, 2), ("down", 2, SMALL)):
+            locator, o = Locator(), getattr(self, f"o_{name}")
+            m.submodules[name] = locator
+            m.d.comb += [
+                locator.valid.eq(near.valid & (near.x >= least_x) & (near.y >= least_y)),
+                locator.pixels.eq(getattr(near, name)),
+                Cat(locator.threshold, locator.contrast, locator.bright).eq(held),
+                o.valid.eq(locator.found),
+                Cat(o.p.x, o.p.y).eq(place.o),
+                *(o.p[field].eq(getattr(locator, field)) for field in ("part", "leaving", "clipped")),
+            ]
+        return m

@@ -1,0 +1,106 @@
+"""The latest crossings of edges, kept in the order in which they were found, and found again by their row."""
+
+from amaranth import Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.memory import Memory
+from amaranth.lib.wiring import In, Out
+from amaranth.utils import bits_for
+
+from hdl.pixels import unstalled
+from hdl.vision.edges.shapes import point_layout
+
+__all__ = ["BLOCK_BITS", "EdgeRing"]
+
+#: The start of every eighth row is remembered.
+BLOCK_BITS = 3
+
+
+class EdgeRing(wiring.Component):
+    """Two rings, and how many crossings had come when a block of rows began.
+
+    ::
+
+        crossings across -> ring -> | data |
+        crossings down ---> ring -> | data |
+        numbers of both --> blocks of rows -> | start |
+
+    Crossings are numbered modulo a frame's pixels at least, so an age that is more than ``depth`` tells that a crossing
+    was overwritten, for a whole frame at least.
+
+    Throughput: a crossing of either kind a clock. Memory: 2 ``depth`` crossings, and 2 numbers for each block of rows.
+
+    Parameters
+    ----------
+    width, height : int
+        Largest frame, pixels.
+    depth : int
+        Crossings of each kind that are kept. Power of two, from 2 up.
+
+    Members
+    -------
+    i_across, i_down : In(unstalled(point_layout(width, height)))
+    row_start : In(1), row : In
+        As :class:`~hdl.vision.edges.edges.Edges` has them.
+    down : In(1)
+        Which of the two is read.
+    block : In, start : Out
+        Number of the first crossing of this block of rows, two clocks later.
+    number : In, data : Out(point_layout(width, height))
+        A crossing, two clocks later.
+    written : Out
+        Number of the crossing that comes next.
+    """
+
+    def __init__(self, *, width, height, depth):
+        if not isinstance(depth, int) or depth < 2 or depth & (depth - 1):
+            raise ValueError(f"depth must be a power of two from 2 up, not {depth!r}")
+        self._depth = depth
+        self._blocks = ((height - 1) >> BLOCK_BITS) + 1
+        self._point = point_layout(width, height)
+        number = max(bits_for(width * height - 1), bits_for(depth))
+        super().__init__(
+            {
+                "i_across": In(unstalled(self._point)),
+                "i_down": In(unstalled(self._point)),
+                "row_start": In(1),
+                "row": In(bits_for(height - 1)),
+                "down": In(1),
+                "block": In(range(max(self._blocks, 2))),
+                "start": Out(number),
+                "number": In(number),
+                "data": Out(self._point),
+                "written": Out(number),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        blocks, data, counts = [], [], []
+        for name in ("across", "down"):
+            stream = getattr(self, f"i_{name}")
+            count = Signal.like(self.written, name=f"count_{name}")
+            m.submodules[name] = ring = Memory(shape=self._point, depth=self._depth, init=[])
+            m.submodules[f"{name}_blocks"] = starts = Memory(shape=len(count), depth=self._blocks, init=[])
+            write, read = ring.write_port(), ring.read_port()
+            note, look = starts.write_port(), starts.read_port()
+            with m.If(stream.valid):
+                m.d.sync += count.eq(count + 1)
+            m.d.comb += [
+                write.addr.eq(count[: len(write.addr)]),
+                write.data.eq(stream.payload),
+                write.en.eq(stream.valid),
+                read.addr.eq(self.number[: len(read.addr)]),
+                note.addr.eq(self.row >> BLOCK_BITS),
+                note.data.eq(count),
+                note.en.eq(self.row_start & (self.row[:BLOCK_BITS] == 0)),
+                look.addr.eq(self.block),
+            ]
+            counts.append(count)
+            data.append(read.data)
+            blocks.append(look.data)
+        m.d.sync += [
+            self.data.eq(Mux(self.down, data[1], data[0])),
+            self.start.eq(Mux(self.down, blocks[1], blocks[0])),
+        ]
+        m.d.comb += self.written.eq(Mux(self.down, counts[1], counts[0]))
+        return m

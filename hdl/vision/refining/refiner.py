@@ -1,0 +1,250 @@
+"""One marker after the other: whole-pixel vertices in, and how far from them the true ones are out."""
+
+from amaranth import Array, Cat, Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+from amaranth.utils import bits_for
+
+from hdl.pixels import ItemKind, unstalled
+from hdl.vision.edges.ring import BLOCK_BITS
+from hdl.vision.edges.shapes import point_layout
+from hdl.vision.matching.geometry import marker_layout
+from hdl.vision.refining.gather import DRAIN, Gather
+from hdl.vision.refining.outline import OUTLINE, Outline
+from hdl.vision.refining.program import Part
+from hdl.vision.refining.scanner import Scanner
+from hdl.vision.refining.sequencer import Sequencer
+from hdl.vision.refining.shapes import refined_layout
+
+__all__ = ["FEWEST", "Refiner"]
+
+#: Least points of a side; of those that could be there, half are needed, too.
+FEWEST = 5
+#: A marker's box must be this far from the border for all crossings to be found.
+NEAR = 7
+
+
+class Refiner(wiring.Component):
+    """Fits two lines to each side, one to the crossings near the chord of its vertices and one to those near that line,
+    and intersects the four last ones.
+
+    ::
+
+        marker -> outline -> scanner -> ring -> gather -> sums -> sequencer -> line -> gather ...
+                                                                      '-> vertices -> o
+
+    Time: about 400 clocks a fit, 8 fits, and twice a clock for each crossing of either kind in the rows of a side, of
+    which a marker has four; 700 clocks for the vertices. It begins above and waits for the rows of each.
+
+    A marker whose refinement fails leaves with offsets of 0. Marks keep their place; END and SKIP wait until the frame
+    is complete here, too.
+
+    Parameters
+    ----------
+    width, height : int
+        Largest frame, pixels.
+    depth : int
+        Of the ring.
+
+    Members
+    -------
+    valid : In(1), marker : In(marker_layout(width, height)), take : Out(1)
+        What to work off; held until ``take``.
+    columns, rows : In(16)
+        Size of its frame.
+    settled, complete : In(1), row : In
+        Of :class:`~hdl.vision.edges.edges.Edges`.
+    down, block, number : Out, start, written, data : In
+        Of :class:`~hdl.vision.edges.ring.EdgeRing`.
+    o : Out(unstalled(refined_layout(width, height)))
+
+    Model: :func:`sim.models.refine.refine`.
+    """
+
+    def __init__(self, *, width, height, depth):
+        self._sizes = {"width": width, "height": height}
+        self._depth = depth
+        number = max(bits_for(width * height - 1), bits_for(depth))
+        self._scanner = {
+            "rows": bits_for(height - 1),
+            "blocks": bits_for(max(1, (height - 1) >> BLOCK_BITS)),
+            "numbers": number,
+            "depth": depth,
+        }
+        super().__init__(
+            {
+                "valid": In(1),
+                "marker": In(marker_layout(width, height)),
+                "take": Out(1),
+                "columns": In(16),
+                "rows": In(16),
+                "settled": In(1),
+                "complete": In(1),
+                "row": In(bits_for(height - 1)),
+                "down": Out(1),
+                "block": Out(self._scanner["blocks"]),
+                "number": Out(number),
+                "start": In(number),
+                "written": In(number),
+                "data": In(point_layout(width, height)),
+                "o": Out(unstalled(refined_layout(width, height))),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.outline = outline = Outline(**self._sizes)
+        m.submodules.scanner = scanner = Scanner(**self._scanner)
+        m.submodules.gather = gather = Gather(**self._sizes)
+        m.submodules.sequencer = sequencer = Sequencer(**self._sizes)
+        marker, o = self.marker, self.o.p
+
+        # The two sides of the lowest vertex come last, because their crossings do.
+        right, downwards = Signal(), Signal()
+        turn, step, side = Signal(2), Signal(2), Signal(2)
+        steep = Signal(4)
+        final, pause = Signal(), Signal(range(max(OUTLINE, DRAIN) + 1))
+        quality = Signal.like(o.quality)
+        offsets = [Signal.like(o.offset1, name=f"offset{k + 1}") for k in range(4)]
+        part_over, failed = Signal(), Signal()
+        before = Signal(2)
+        one_steep, other_steep = Array(steep)[before], Array(steep)[step]
+        m.d.comb += [
+            right.eq(marker.v1.x < marker.v2.x),
+            downwards.eq(marker.v1.y < marker.v2.y),
+            turn.eq(Cat(right == downwards, downwards)),
+            side.eq(step + turn),
+            before.eq(step - 1),
+            *(outline.vertices[k].eq(marker[f"v{k + 1}"]) for k in range(4)),
+            outline.side.eq(side),
+            *(getattr(scanner, n).eq(getattr(self, n)) for n in ("settled", "complete", "row", "start", "written")),
+            scanner.first.eq(outline.first),
+            scanner.last.eq(outline.last),
+            scanner.stop.eq(gather.beyond),
+            *(getattr(self, n).eq(getattr(scanner, n)) for n in ("block", "number")),
+            self.down.eq(~outline.steep),
+            gather.valid.eq(scanner.valid),
+            gather.point.eq(self.data),
+            gather.down.eq(~outline.steep),
+            *(getattr(gather, n).eq(getattr(outline, n)) for n in ("leaving", "first", "span", "middle", "reach")),
+            gather.final.eq(final),
+            gather.probe.eq(sequencer.busy),
+            gather.x.eq(Mux(sequencer.at_end, outline.q.x, outline.p.x)),
+            gather.y.eq(Mux(sequencer.at_end, outline.q.y, outline.p.y)),
+            gather.c.eq(sequencer.c),
+            gather.s.eq(sequencer.s),
+            sequencer.sums.eq(gather.sums),
+            sequencer.fine.eq(gather.fine),
+            sequencer.along.eq(outline.along),
+            sequencer.aside.eq(outline.aside),
+            sequencer.side.eq(step),
+            sequencer.before.eq(before),
+            sequencer.swap.eq(~one_steep & other_steep),
+            part_over.eq(~sequencer.busy),
+            *(o[name].eq(marker[name]) for name, _ in marker.shape()),
+            *(o[f"offset{k + 1}"].eq(offsets[k]) for k in range(4)),
+            o.quality.eq(quality),
+            o.quality.clipped.eq(gather.clipped),
+        ]
+        near = Signal(reset_less=True)
+        m.d.sync += near.eq(
+            (marker.box_min.x < NEAR)
+            | (marker.box_min.y < NEAR)
+            | (marker.box_max.x + NEAR + 1 > self.columns)
+            | (marker.box_max.y + NEAR + 1 > self.rows)
+        )
+        m.d.comb += o.quality.border.eq(near)
+
+        with m.FSM(name="refiner"):
+            with m.State("IDLE"):
+                m.d.comb += gather.clear_all.eq(1)
+                m.d.sync += [step.eq(0), quality.eq(0), quality.points.eq(~0), pause.eq(OUTLINE), final.eq(0)]
+                m.d.sync += [offset.eq(0) for offset in offsets]
+                with m.If(self.valid):
+                    with m.If(marker.kind == ItemKind.ITEM):
+                        m.next = "SIDE"
+                    with m.Elif((marker.kind == ItemKind.ABORT) | scanner.behind):
+                        m.d.comb += [
+                            self.o.valid.eq(1),
+                            self.take.eq(1),
+                            scanner.done.eq(marker.kind != ItemKind.ABORT),
+                        ]
+                        m.next = "LEAVE"
+            with m.State("SIDE"):
+                m.d.sync += pause.eq(pause - 1)
+                with m.If(pause == 0):
+                    m.d.sync += steep.bit_select(step, 1).eq(outline.steep)
+                    m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.CHORD)]
+                    m.next = "CHORD"
+            with m.State("CHORD"), m.If(part_over):
+                m.next = "SCAN"
+            with m.State("SCAN"):
+                m.d.comb += [scanner.go.eq(1), gather.clear.eq(1)]
+                m.d.sync += pause.eq(DRAIN)
+                m.next = "READ"
+            with m.State("READ"), m.If(~scanner.busy):
+                m.d.sync += pause.eq(pause - 1)
+                with m.If(pause == 0):
+                    m.next = "JUDGE"
+            with m.State("JUDGE"):
+                m.next = "FIT"
+                with m.If(scanner.lost):
+                    m.d.sync += quality.lost.eq(1)
+                    m.next = "EMIT"
+                with m.Else():
+                    with m.If(gather.sums.n < quality.points):
+                        m.d.sync += quality.points.eq(gather.sums.n)
+                    with m.If((gather.sums.n < FEWEST) | (gather.sums.n <= outline.reach)):
+                        m.d.sync += quality.few.eq(1)
+                        m.next = "EMIT"
+                    with m.Else():
+                        m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.FIT)]
+            with m.State("FIT"), m.If(part_over):
+                m.d.sync += final.eq(1)
+                m.next = "SCAN"
+                with m.If(failed):
+                    m.next = "ASTRAY"
+                with m.Elif(final):
+                    m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.ENDS)]
+                    m.next = "ENDS"
+            with m.State("ENDS"), m.If(part_over):
+                m.d.sync += [step.eq(step + 1), pause.eq(OUTLINE), final.eq(0)]
+                m.next = "SIDE"
+                with m.If(step == 3):
+                    m.next = "VERTEX"
+            with m.State("VERTEX"):
+                m.d.comb += [
+                    sequencer.go.eq(1),
+                    sequencer.part.eq(Mux(one_steep == other_steep, Part.ALIKE, Part.CROSS)),
+                ]
+                m.next = "MEET"
+            with m.State("MEET"):
+                first, second = sequencer.first, sequencer.second
+                with m.If(part_over):
+                    for k in range(4):
+                        with m.If(side == k):
+                            m.d.sync += [
+                                offsets[k].x.eq(Mux(one_steep & other_steep, second, first)),
+                                offsets[k].y.eq(Mux(one_steep & other_steep, first, second)),
+                            ]
+                    m.d.sync += step.eq(step + 1)
+                    m.next = "VERTEX"
+                    with m.If(failed | sequencer.far):
+                        m.next = "ASTRAY"
+                    with m.Elif(step == 3):
+                        m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.RESIDUAL)]
+                        m.next = "RESIDUAL"
+            with m.State("RESIDUAL"), m.If(part_over):
+                m.d.sync += [quality.residual.eq(sequencer.ratio), quality.refined.eq(1)]
+                m.next = "EMIT"
+            with m.State("ASTRAY"):
+                m.d.sync += quality.astray.eq(1)
+                m.d.sync += [offset.eq(0) for offset in offsets]
+                m.next = "EMIT"
+            with m.State("EMIT"):
+                m.d.comb += [self.o.valid.eq(1), self.take.eq(1)]
+                m.next = "LEAVE"
+            with m.State("LEAVE"):  # until the next one is shown
+                m.next = "IDLE"
+        m.d.comb += failed.eq(sequencer.overflow)
+        return m
