@@ -11,7 +11,7 @@ from sim.bench.score import FOUND_PX, Score, fit_markers, score_frame
 
 SQUARE = np.array([[100, 100], [200, 100], [200, 200], [100, 200]], float)
 KEYS = {
-    "clocks_per_frame", "vertices_latency_clocks", "crowd_latency_clocks", "rtl_frames_per_s", "model_frames_per_s",
+    "clocks_per_frame", "vertices_latency_lines", "crowd_latency_lines", "rtl_frames_per_s", "model_frames_per_s",
     "found_rate", "found_rate_hard", "false_markers", "wrong_order", "false_markers_photographs",
     "vertex_rms_px", "vertex_p95_px", "vertex_rms_whole_px", "vertex_rms_hard_px",
     "posit_clocks_classic", "posit_clocks_centred", "posit_clocks_soft_float", "fpu_clocks",
