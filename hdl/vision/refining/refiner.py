@@ -52,7 +52,7 @@ class Refiner(wiring.Component):
         What to work off; held until ``take``.
     columns, rows : In(16)
         Size of its frame.
-    settled, complete : In(1), row : In
+    row_start, settled, complete : In(1), row : In
         Of :class:`~hdl.vision.edges.edges.Edges`.
     down, block, number : Out, start, written, data : In
         Of :class:`~hdl.vision.edges.ring.EdgeRing`.
@@ -78,6 +78,7 @@ class Refiner(wiring.Component):
                 "take": Out(1),
                 "columns": In(16),
                 "rows": In(16),
+                "row_start": In(1),
                 "settled": In(1),
                 "complete": In(1),
                 "row": In(bits_for(height - 1)),
@@ -117,7 +118,8 @@ class Refiner(wiring.Component):
             before.eq(step - 1),
             *(outline.vertices[k].eq(marker[f"v{k + 1}"]) for k in range(4)),
             outline.side.eq(side),
-            *(getattr(scanner, n).eq(getattr(self, n)) for n in ("settled", "complete", "row", "start", "written")),
+            *(getattr(scanner, n).eq(getattr(self, n)) for n in ("row_start", "settled", "complete", "row")),
+            *(getattr(scanner, n).eq(getattr(self, n)) for n in ("start", "written")),
             scanner.first.eq(outline.first),
             scanner.last.eq(outline.last),
             scanner.stop.eq(gather.beyond),

@@ -90,7 +90,7 @@ class Refining(wiring.Component):
             ring.row.eq(edges.row),
             *(getattr(ring, name).eq(getattr(refiner, name)) for name in ("down", "block", "number")),
             *(getattr(refiner, name).eq(getattr(ring, name)) for name in ("start", "written", "data")),
-            *(getattr(refiner, name).eq(getattr(edges, name)) for name in ("settled", "complete", "row")),
+            *(getattr(refiner, name).eq(getattr(edges, name)) for name in ("row_start", "settled", "complete", "row")),
             *(getattr(refiner, name).eq(getattr(self, name)) for name in ("columns", "rows")),
             # Half of the queue is for marks alone: those of frames that end while the other half is worked off.
             is_item.eq(marker.kind == ItemKind.ITEM),
