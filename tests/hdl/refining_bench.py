@@ -97,7 +97,11 @@ def expected(frame, *, level=120, contrast=16, bright=False):
     markers = find_markers(find_blobs(threshold(frame, level, bright)), columns, rows, 12)
     points = edge_points(frame, level, bright, contrast)
     bits = (max(frame.shape) - 1).bit_length()
-    return markers, refine_markers(markers, *points, columns, rows, bits)
+    refined = refine_markers(markers, *points, columns, rows, bits)
+    result = np.zeros(len(refined), REFINEMENT)
+    for name in REFINEMENT.names:
+        result[name] = refined[name]
+    return markers, result
 
 
 def refinements(run, size):
