@@ -38,10 +38,7 @@ class SensorConfig:
     marker_depth : int
         Markers kept per frame. Power of two.
     candidate_depth : int
-        Twice the components that may wait for matching at one time, and the markers that may wait to be refined. Power
-        of two.
-    edge_depth : int
-        Crossings of edges kept for refinement, of rows and of columns each. Power of two.
+        Components that may wait for matching at one time. Power of two.
 
     Raises
     ------
@@ -55,14 +52,13 @@ class SensorConfig:
     corner_depth: int = 1024
     marker_depth: int = 64
     candidate_depth: int = 64
-    edge_depth: int = 4096
 
     def __post_init__(self):
         for name in ("width", "height"):
             size = getattr(self, name)
             if not isinstance(size, int) or not SMALLEST_FRAME <= size <= 4096:
                 raise ValueError(f"{name} must be {SMALLEST_FRAME} to 4096 pixels, not {size!r}")
-        for name in ("blob_depth", "corner_depth", "marker_depth", "candidate_depth", "edge_depth"):
+        for name in ("blob_depth", "corner_depth", "marker_depth", "candidate_depth"):
             depth = getattr(self, name)
             if depth < 2 or depth & (depth - 1):
                 raise ValueError(f"{name} must be a power of two from 2 up, not {depth!r}")
