@@ -20,8 +20,9 @@ from tests.hdl.refining_bench import (
     refinements,
     settings,
 )
+from tests.shapes import marker_grid
 
-LARGE, SMALL = (640, 480), (120, 90)
+LARGE, SMALL, TINY = (640, 480), (120, 90), (64, 48)
 
 
 def pictures(count, seed=0, **scene):
@@ -56,6 +57,34 @@ def test_random_frames(idle):
     run = play(SMALL, frames, idle=gaps)
     assert not len(run["dropped"]) and not len(run["overflow"])
     assert check(frames_of(run, SMALL), frames, may_lose=0 if idle else 6) > 35
+
+
+def tiny_frames(random, count):
+    """One marker each, near the first row or not, and noise."""
+    frames = []
+    for _ in range(count):
+        level = marker_grid(random, *TINY[::-1], (28, 32)) // 2 + 60 + random.normal(0, 20, TINY[::-1])
+        frames.append(np.clip(level, 0, 253).astype(np.uint8))
+    return frames
+
+
+@pytest.mark.parametrize("gap", [0, 5000])
+def test_tiny_frames(gap):
+    """Markers near the first row, noise in the last one of the frame before, and hardly any time or plenty."""
+    frames = tiny_frames(np.random.default_rng(9), 60)
+    idle = np.concatenate([np.r_[gap, np.zeros(frame.size - 1, int)] for frame in frames])
+    got = frames_of(play(TINY, frames, idle=idle), TINY)
+    assert check(got, frames, may_lose=0 if gap else 60) > (20 if gap else 0)
+
+
+def test_frames_cut_again_and_again():
+    """One that is cut has overwritten crossings of the one before, though the next starts at the top again."""
+    random = np.random.default_rng(10)
+    frames = pictures(61, seed=300)
+    cuts = [None if k % 3 == 0 else int(random.integers(4000, 9000)) for k in range(len(frames))]
+    got = [frame for frame in frames_of(play(SMALL, frames, cuts=cuts), SMALL) if frame[0] == ItemKind.END.value]
+    whole = [frame for frame, cut in zip(frames, cuts, strict=True) if cut is None]
+    assert check(got, whole, may_lose=25) > 5
 
 
 def test_all_verdicts():
@@ -108,21 +137,41 @@ def test_ring_overflow():
     assert 5 < lost
 
 
-def test_queue_overflow():
-    """A queue of two markers and eight that end in one row: some are lost, all marks come, the others are right."""
-    lens = Lens()
-    poses = [marker_pose((50 + 75 * k, 100), 40, 0, 0, 90 * k + 7, lens) for k in range(8)]
+def row_of_eight():
+    """A frame with eight markers that end in one row."""
+    poses = [marker_pose((50 + 75 * k, 100), 40, 0, 0, 90 * k + 7, Lens()) for k in range(8)]
     frame = render(Scene(markers=poses)).image
-    frame = (frame >> 2) * 2 + (frame >> 1)
-    got = frames_of(play(LARGE, [frame, frame], depths={"depth": 4}), LARGE)
+    return (frame >> 2) * 2 + (frame >> 1)
+
+
+def test_queue_overflow():
+    """Room for three: some markers find none, which is told; all marks come, and the others are right or given up."""
+    frame = row_of_eight()
     run = play(LARGE, [frame, frame], depths={"depth": 4})
+    got = frames_of(run, LARGE)
     markers, model = expected(frame)
     assert len(markers) == 8 and [kind for kind, *_ in got] == [ItemKind.END.value] * 2
     assert 2 * 8 == len(run["dropped"]) + sum(len(whole) for _, whole, _ in got) and len(run["dropped"])
+    refined = 0
     for _, whole, result in got:
         for vertices, one in zip(whole, result, strict=True):
             (number,) = np.flatnonzero((markers["vertices"] == vertices).all(axis=(1, 2)))
-            assert one == model[number]
+            assert one == model[number] or (one["flags"] == Quality.LOST and not one["offsets"].any())
+            refined += bool(one["flags"] & Quality.REFINED)
+    assert refined >= 4
+
+
+def test_hurry():
+    """With a quarter of the queue waiting, markers leave as they are; none is dropped, and the next frame is right."""
+    frame = row_of_eight()
+    run = play(LARGE, [frame, frame], depths={"depth": 16})
+    assert not len(run["dropped"])
+    markers, model = expected(frame)
+    for _, whole, result in frames_of(run, LARGE):
+        assert np.array_equal(whole, markers["vertices"])
+        lost = result["flags"] & Quality.LOST != 0
+        assert 1 <= np.count_nonzero(lost) <= 4 and not result["offsets"][lost].any()
+        assert np.array_equal(result[~lost], model[~lost])
 
 
 def test_twenty_markers_in_every_frame():

@@ -49,8 +49,8 @@ class Edges(wiring.Component):
         Strobe: crossings found with pixels of this row may follow from now on, after those of the row before.
     settled : Out(1)
         Strobe: all found with pixels of rows before ``row`` are out.
-    complete : Out(1)
-        Strobe: all of a complete frame are out, and none of another.
+    ended, complete : Out(1)
+        Strobes: a complete frame's last pixel was here; all of that frame are out, and none of another.
 
     Model: :func:`sim.models.edges.edge_points`. Source: the middle between the plateaus is ours; that an edge of a
     blurred picture lies where the middle is crossed is common knowledge.
@@ -70,6 +70,7 @@ class Edges(wiring.Component):
                 "row_start": Out(1),
                 "row": Out(bits_for(height - 1)),
                 "settled": Out(1),
+                "ended": Out(1),
                 "complete": Out(1),
             }
         )
@@ -93,9 +94,10 @@ class Edges(wiring.Component):
             self.row_start.eq(near.valid & (near.x == 0)),
             self.row.eq(near.y),
             self.settled.eq(near.valid & (near.x == SETTLED)),
+            self.ended.eq(near.valid & near.last),
             self.complete.eq(left == 1),
         ]
-        with m.If(near.valid & near.last):
+        with m.If(self.ended):
             m.d.sync += left.eq(SETTLED - 3)
         with m.Elif(left != 0):
             m.d.sync += left.eq(left - 1)

@@ -39,7 +39,7 @@ class EdgeRing(wiring.Component):
     Members
     -------
     i_across, i_down : In(unstalled(point_layout(width, height)))
-    row_start : In(1), row : In
+    row_start, settled : In(1), row : In
         As :class:`~hdl.vision.edges.edges.Edges` has them.
     down : In(1)
         Which of the two is read.
@@ -63,6 +63,7 @@ class EdgeRing(wiring.Component):
                 "i_across": In(unstalled(self._point)),
                 "i_down": In(unstalled(self._point)),
                 "row_start": In(1),
+                "settled": In(1),
                 "row": In(bits_for(height - 1)),
                 "down": In(1),
                 "block": In(range(max(self._blocks, 2))),
@@ -76,6 +77,8 @@ class EdgeRing(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         blocks, data, counts = [], [], []
+        # A frame's first row has none itself, but the last of the frame before may still come when it starts.
+        begins = Mux(self.row[BLOCK_BITS:] == 0, self.settled, self.row_start) & (self.row[:BLOCK_BITS] == 0)
         for name in ("across", "down"):
             stream = getattr(self, f"i_{name}")
             count = Signal.like(self.written, name=f"count_{name}")
@@ -92,7 +95,7 @@ class EdgeRing(wiring.Component):
                 read.addr.eq(self.number[: len(read.addr)]),
                 note.addr.eq(self.row >> BLOCK_BITS),
                 note.data.eq(count),
-                note.en.eq(self.row_start & (self.row[:BLOCK_BITS] == 0)),
+                note.en.eq(begins),
                 look.addr.eq(self.block),
             ]
             counts.append(count)

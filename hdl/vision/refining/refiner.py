@@ -50,9 +50,11 @@ class Refiner(wiring.Component):
     -------
     valid : In(1), marker : In(marker_layout(width, height)), take : Out(1)
         What to work off; held until ``take``.
+    hurry : In(1)
+        Too many wait: it leaves as it is, marked as lost.
     columns, rows : In(16)
-        Size of its frame.
-    row_start, settled, complete : In(1), row : In
+        Size of the frame in progress.
+    row_start, settled, ended, complete : In(1), row : In
         Of :class:`~hdl.vision.edges.edges.Edges`.
     down, block, number : Out, start, written, data : In
         Of :class:`~hdl.vision.edges.ring.EdgeRing`.
@@ -76,10 +78,12 @@ class Refiner(wiring.Component):
                 "valid": In(1),
                 "marker": In(marker_layout(width, height)),
                 "take": Out(1),
+                "hurry": In(1),
                 "columns": In(16),
                 "rows": In(16),
                 "row_start": In(1),
                 "settled": In(1),
+                "ended": In(1),
                 "complete": In(1),
                 "row": In(bits_for(height - 1)),
                 "down": Out(1),
@@ -118,7 +122,7 @@ class Refiner(wiring.Component):
             before.eq(step - 1),
             *(outline.vertices[k].eq(marker[f"v{k + 1}"]) for k in range(4)),
             outline.side.eq(side),
-            *(getattr(scanner, n).eq(getattr(self, n)) for n in ("row_start", "settled", "complete", "row")),
+            *(getattr(scanner, n).eq(getattr(self, n)) for n in ("row_start", "settled", "ended", "complete", "row")),
             *(getattr(scanner, n).eq(getattr(self, n)) for n in ("start", "written")),
             scanner.first.eq(outline.first),
             scanner.last.eq(outline.last),
@@ -148,23 +152,36 @@ class Refiner(wiring.Component):
             o.quality.eq(quality),
             o.quality.clipped.eq(gather.clipped),
         ]
-        near = Signal(reset_less=True)
-        m.d.sync += near.eq(
-            (marker.box_min.x < NEAR)
-            | (marker.box_min.y < NEAR)
-            | (marker.box_max.x + NEAR + 1 > self.columns)
-            | (marker.box_max.y + NEAR + 1 > self.rows)
-        )
+        # Its frame is the one in progress or the one that was complete last; others come too late anyway.
+        near, last = Signal(reset_less=True), {}
+        for axis, size in (("x", self.columns), ("y", self.rows)):
+            bits = len(marker.box_max[axis])
+            now, ended = Signal(bits, name=f"now_{axis}"), Signal(bits, name=f"ended_{axis}", reset_less=True)
+            last[axis] = Signal(bits, name=f"last_{axis}")
+            m.d.comb += [now.eq(size - 1 - NEAR), last[axis].eq(Mux(scanner.behind, ended, now))]
+            with m.If(self.complete):
+                m.d.sync += ended.eq(now)
+        fresh = Signal()
+        with m.If(fresh):
+            m.d.sync += near.eq(
+                (marker.box_min.x < NEAR)
+                | (marker.box_min.y < NEAR)
+                | (marker.box_max.x > last["x"])
+                | (marker.box_max.y > last["y"])
+            )
         m.d.comb += o.quality.border.eq(near)
 
         with m.FSM(name="refiner"):
             with m.State("IDLE"):
-                m.d.comb += gather.clear_all.eq(1)
+                m.d.comb += [gather.clear_all.eq(1), fresh.eq(1)]
                 m.d.sync += [step.eq(0), quality.eq(0), quality.points.eq(~0), pause.eq(OUTLINE), final.eq(0)]
                 m.d.sync += [offset.eq(0) for offset in offsets]
                 with m.If(self.valid):
                     with m.If(marker.kind == ItemKind.ITEM):
                         m.next = "SIDE"
+                        with m.If(self.hurry):
+                            m.d.sync += quality.lost.eq(1)
+                            m.next = "EMIT"
                     with m.Elif((marker.kind == ItemKind.ABORT) | scanner.behind):
                         m.d.comb += [
                             self.o.valid.eq(1),

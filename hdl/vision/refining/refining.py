@@ -35,7 +35,8 @@ class Refining(wiring.Component):
     width, height : int
         Largest frame, pixels.
     depth : int
-        Twice the number of markers that can wait. Power of two.
+        Markers and marks that can wait; of markers three quarters. While more than a quarter wait, markers leave as
+        they are. Power of two.
     ring_depth : int
         Crossings of either kind that are kept. Power of two.
 
@@ -54,7 +55,7 @@ class Refining(wiring.Component):
     Models: :mod:`sim.models.edges`, :mod:`sim.models.refine`.
     """
 
-    def __init__(self, *, width, height, depth=64, ring_depth=4096):
+    def __init__(self, *, width, height, depth=128, ring_depth=4096):
         self._sizes = {"width": width, "height": height}
         self._depth, self._ring_depth = depth, ring_depth
         super().__init__(
@@ -87,14 +88,19 @@ class Refining(wiring.Component):
         m.d.comb += [
             *(getattr(edges, name).eq(getattr(self, name)) for name in ("threshold", "contrast", "bright")),
             ring.row_start.eq(edges.row_start),
+            ring.settled.eq(edges.settled),
             ring.row.eq(edges.row),
             *(getattr(ring, name).eq(getattr(refiner, name)) for name in ("down", "block", "number")),
             *(getattr(refiner, name).eq(getattr(ring, name)) for name in ("start", "written", "data")),
-            *(getattr(refiner, name).eq(getattr(edges, name)) for name in ("row_start", "settled", "complete", "row")),
+            *(
+                getattr(refiner, name).eq(getattr(edges, name))
+                for name in ("row_start", "settled", "ended", "complete", "row")
+            ),
             *(getattr(refiner, name).eq(getattr(self, name)) for name in ("columns", "rows")),
-            # Half of the queue is for marks alone: those of frames that end while the other half is worked off.
+            # A quarter of the queue is for marks alone: those of frames that end while the rest is worked off.
             is_item.eq(marker.kind == ItemKind.ITEM),
-            has_room.eq(queue.w_rdy & ~(is_item & (queue.w_level >= self._depth // 2))),
+            has_room.eq(queue.w_rdy & ~(is_item & (queue.w_level >= self._depth // 4 * 3))),
+            refiner.hurry.eq(queue.w_level > self._depth // 4),
             queue.w_data.eq(marker),
             queue.w_en.eq(self.i.valid & has_room),
             self.dropped.eq(self.i.valid & is_item & ~has_room),

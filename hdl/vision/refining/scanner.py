@@ -30,7 +30,7 @@ class Scanner(wiring.Component):
 
     Members
     -------
-    row_start, settled, complete : In(1), row : In(rows)
+    row_start, settled, ended, complete : In(1), row : In(rows)
         As :class:`~hdl.vision.edges.edges.Edges` has them.
     done : In(1), behind : Out(1)
         Strobe: a complete frame is done with; there is one that is not.
@@ -55,6 +55,7 @@ class Scanner(wiring.Component):
             {
                 "row_start": In(1),
                 "settled": In(1),
+                "ended": In(1),
                 "complete": In(1),
                 "row": In(rows),
                 "done": In(1),
@@ -75,15 +76,20 @@ class Scanner(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        # All crossings that were found with rows before this one are out.
-        row = Signal(len(self.row) + 1)
+        # All crossings that were found with rows before ``row`` are out. ``reached`` is the greatest since a frame was
+        # complete: frames that are cut start again, and have overwritten what they had reached.
+        row, reached = Signal(len(self.row)), Signal(len(self.row) + 1)
         behind, begun = Signal(8), Signal()
-        with m.If(self.complete):
-            m.d.sync += [row.eq(0), begun.eq(0)]
+        with m.If(self.ended):
+            m.d.sync += begun.eq(0)
         with m.Elif(self.row_start):
             m.d.sync += begun.eq(1)
-        with m.If(self.settled & ~self.complete):
+        with m.If(self.complete):
+            m.d.sync += [row.eq(0), reached.eq(0)]
+        with m.Elif(self.settled):
             m.d.sync += row.eq(self.row)
+            with m.If(self.row > reached):
+                m.d.sync += reached.eq(self.row)
         with m.If(self.complete & ~self.done):
             m.d.sync += behind.eq(behind + 1)
         with m.Elif(self.done & ~self.complete):
@@ -97,8 +103,8 @@ class Scanner(wiring.Component):
         m.d.comb += [
             self.block.eq(self.first[BLOCK_BITS:-1] & (~self.first[-1]).replicate(len(self.first))),
             has_come.eq(self.behind | (row > self.last)),
-            # The next frame, if it has begun, may be one row further than ``row``.
-            is_there.eq(~self.behind | (behind == 1) & (~begun | ((row + 1) >> BLOCK_BITS < self.block))),
+            # The next frame, if it has begun, may be one row further.
+            is_there.eq(~self.behind | (behind == 1) & (~begun | ((reached + 1) >> BLOCK_BITS < self.block))),
             self.number.eq(number),
             self.valid.eq(reading[-1]),
             age.eq(self.written - start),
