@@ -38,7 +38,8 @@ class SensorConfig:
     marker_depth : int
         Markers kept per frame. Power of two.
     candidate_depth : int
-        Components that may wait for matching at one time. Power of two.
+        Twice the components that may wait for matching at one time; twice as many markers and marks may wait to be
+        refined. Power of two.
 
     Raises
     ------
@@ -62,3 +63,8 @@ class SensorConfig:
             depth = getattr(self, name)
             if depth < 2 or depth & (depth - 1):
                 raise ValueError(f"{name} must be a power of two from 2 up, not {depth!r}")
+
+    @property
+    def edge_depth(self):
+        """Crossings of edges kept for refinement, of rows and of columns each: at least 6 a column."""
+        return max(4096, 1 << (6 * self.width - 1).bit_length())

@@ -16,6 +16,7 @@ from hdl.vision.corners import Corners
 from hdl.vision.framer import Framer
 from hdl.vision.grey import Grey
 from hdl.vision.matching.matching import Matching
+from hdl.vision.refining.refining import Refining
 from hdl.vision.segmentation.segmentation import Segmentation
 from hdl.vision.size_filter import SizeFilter
 from hdl.vision.threshold import Threshold
@@ -31,11 +32,12 @@ class Sensor(wiring.Component):
         camera -> framer -> grey -> threshold -> segmentation -> size filter -> publisher -> box store
                                 |                                                |   ^
                                 |                                                v   |
-                                |                                             matching -> marker store
+                                |                                             matching -> refining -> marker store
+                                |-> edges, within refining ---------------------------------'
                                 '-> corners ------------------------------> publisher -> corner store
 
-    Throughput: one pixel a clock, any gaps or none. Latency: a marker is readable in the live window a row or two
-    after its last row; a frame is published when its last candidate is matched.
+    Throughput: one pixel a clock, any gaps or none. Latency: a marker is readable in the live window 7 rows and
+    some 2,500 clocks after its last row; a frame is published when its last marker is refined.
 
     Parameters
     ----------
@@ -78,6 +80,9 @@ class Sensor(wiring.Component):
         m.submodules.size_filter = size_filter = SizeFilter(**sizes)
         m.submodules.corners = corners = Corners(**sizes)
         m.submodules.matching = matching = Matching(**sizes, depth=config.candidate_depth)
+        m.submodules.refining = refining = Refining(
+            **sizes, depth=2 * config.candidate_depth, ring_depth=config.edge_depth
+        )
         m.submodules.publisher = publisher = sensor_stores.publisher(**sizes)
 
         # Pixels.
@@ -90,6 +95,8 @@ class Sensor(wiring.Component):
             threshold.i.valid.eq(grey.o.valid),
             corners.i.payload.eq(grey.o.payload),
             corners.i.valid.eq(grey.o.valid),
+            refining.pixels.payload.eq(grey.o.payload),
+            refining.pixels.valid.eq(grey.o.valid),
         ]
         connect(m, framer.o, grey.i)
         connect(m, threshold.o, segmentation.i)
@@ -98,7 +105,8 @@ class Sensor(wiring.Component):
         connect(m, segmentation.o, size_filter.i)
         connect(m, size_filter.o, publisher.i_blob)
         connect(m, corners.o, publisher.i_corner)
-        connect(m, matching.o, publisher.i_marker)
+        connect(m, matching.o, refining.i)
+        connect(m, refining.o, publisher.i_marker)
         m.d.comb += [
             matching.i.payload.eq(segmentation.o.payload),
             matching.i.valid.eq(segmentation.o.valid),
@@ -106,7 +114,8 @@ class Sensor(wiring.Component):
             matching.kept.valid.eq(publisher.o_blob.valid),
         ]
         self._connect_settings(m, registers, framer, threshold, size_filter, corners, matching, publisher)
-        self._connect_events(m, registers, framer, segmentation, matching, publisher)
+        self._connect_refining(m, registers, framer, refining)
+        self._connect_events(m, registers, framer, segmentation, matching, refining, publisher)
         stores, addresses = self._connect_stores(m, registers, publisher)
         self._connect_readers(m, publisher, stores, addresses)
         self._connect_counters(m, registers, size_filter, matching, publisher)
@@ -135,7 +144,17 @@ class Sensor(wiring.Component):
         ]
 
     @staticmethod
-    def _connect_events(m, registers, framer, segmentation, matching, publisher):
+    def _connect_refining(m, registers, framer, refining):
+        m.d.comb += [
+            refining.threshold.eq(registers.threshold.level),
+            refining.bright.eq(registers.control.bright),
+            refining.contrast.eq(registers.edge.contrast),
+            refining.columns.eq(framer.frame_columns),
+            refining.rows.eq(framer.frame_rows),
+        ]
+
+    @staticmethod
+    def _connect_events(m, registers, framer, segmentation, matching, refining, publisher):
         m.d.comb += [
             registers.status.valid.eq(publisher.valid),
             registers.status.held.eq(publisher.held),
@@ -144,7 +163,8 @@ class Sensor(wiring.Component):
             registers.live.frame.eq(publisher.live_frame),
             registers.irq_status.published_set.eq(publisher.published),
             registers.flags.candidate_overflow_set.eq(matching.dropped),
-            registers.flags.queue_overflow_set.eq(segmentation.overflow | matching.overflow),
+            registers.flags.queue_overflow_set.eq(segmentation.overflow | matching.overflow | refining.overflow),
+            registers.flags.refining_overflow_set.eq(refining.dropped),
             registers.frames_complete.count_incr.eq(publisher.complete),
             registers.frames_skipped.count_incr.eq(publisher.skipped),
             registers.short_lines.count_incr.eq(framer.o_error.short_line),
@@ -201,6 +221,8 @@ class Sensor(wiring.Component):
             register = getattr(registers.items.marker, name)
             if name.endswith("area"):
                 m.d.comb += register.pixels.eq(item[name])
+            elif name == "quality":
+                m.d.comb += [getattr(register, field).eq(item[name][field]) for field, _ in item[name].shape()]
             else:
                 m.d.comb += [register.x.eq(item[name].x), register.y.eq(item[name].y)]
         for vertex in range(1, 5):
@@ -237,7 +259,8 @@ class Sensor(wiring.Component):
         m.submodules.lost_candidates = lost_candidates = FrameCounter()
         for counter, event, stream, value in (
             (small_blobs, size_filter.small, publisher.o_blob, registers.blobs_small.count),
-            (lost_candidates, matching.dropped, publisher.o_marker, registers.candidates_dropped.count),
+            # Before markers wait to be refined, or those lost meanwhile would count for the frame before.
+            (lost_candidates, matching.dropped, matching.o, registers.candidates_dropped.count),
         ):
             m.d.comb += [
                 counter.i_valid.eq(stream.valid),

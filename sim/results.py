@@ -28,6 +28,8 @@ class Settings:
         Components smaller in any of them are counted only.
     marker_min_side : int
         Smallest width and height of a marker's box.
+    edge_contrast : int
+        0 to 255. Least difference of the grey levels on either side of an edge that refines vertices.
 
     Raises
     ------
@@ -44,6 +46,7 @@ class Settings:
     blob_min_height: int = 8
     blob_min_area: int = 64
     marker_min_side: int = 16
+    edge_contrast: int = 16
 
     def __post_init__(self):
         ranges = {
@@ -55,6 +58,7 @@ class Settings:
             "blob_min_height": (0, 4096),
             "blob_min_area": (0, 4096 * 4096),
             "marker_min_side": (0, 4096),
+            "edge_contrast": (0, 255),
         }
         for name, (low, high) in ranges.items():
             if not low <= getattr(self, name) <= high:
@@ -66,7 +70,7 @@ class FrameResult:
     """Everything the sensor says of one frame.
 
     ``blobs`` are of :data:`BOX`, ``corners`` of :data:`sim.models.fast.CORNER`, ``markers`` of
-    :data:`sim.models.matching.MARKER`, each in the hardware's order. ``clocks`` is the number of clocks from the
+    :data:`sim.models.refine.REFINED_MARKER`, each in the hardware's order. ``clocks`` is the number of clocks from the
     frame's first pixel to the next frame's, None where no clock was simulated.
     """
 

@@ -2,7 +2,7 @@
 
 #include "registers.h"
 
-enum { PATIENCE = 10000 };  // polls, of more than 5 clocks each; publishing takes 6,000 clocks at most
+enum { PATIENCE = 100000 };  // polls, of more than 5 clocks each; 32 markers are refined in 200,000 clocks
 
 static uint32_t next_number;
 static int started;
@@ -15,10 +15,11 @@ static int hold(void) {
     return 0;
 }
 
-// As signed numbers, which coordinates are not: the floating-point unit converts no others.
-static void read_vertex(float *vertex, uint32_t word) {
-    vertex[0] = (float)(int16_t)word;
-    vertex[1] = (float)((int32_t)word >> 16);
+// As signed numbers, which coordinates are not: the floating-point unit converts no others. Whole pixels and 256ths of
+// one fit into single precision, so the sum is exact.
+static void read_vertex(float *vertex, uint32_t word, uint32_t offset) {
+    vertex[0] = (float)(((int32_t)(int16_t)word << 8) + (int16_t)offset) * (1.0f / 256.0f);
+    vertex[1] = (float)(((int32_t)word >> 16 << 8) + ((int32_t)offset >> 16)) * (1.0f / 256.0f);
 }
 
 int frame_take(struct frame_report *report) {
@@ -35,10 +36,10 @@ int frame_take(struct frame_report *report) {
         for (uint32_t number = 0; number < report->markers; number++) {
             volatile rasterpose__marker_t *const marker = &SYSTEM->sensor.MARKER_WINDOW[number];
             float *const vertices = report->marker[number].vertices_px;
-            read_vertex(vertices + 0, marker->v1);
-            read_vertex(vertices + 2, marker->v2);
-            read_vertex(vertices + 4, marker->v3);
-            read_vertex(vertices + 6, marker->v4);
+            read_vertex(vertices + 0, marker->v1, marker->offset1);
+            read_vertex(vertices + 2, marker->v2, marker->offset2);
+            read_vertex(vertices + 4, marker->v3, marker->offset3);
+            read_vertex(vertices + 6, marker->v4, marker->offset4);
         }
         next_number = frame + 1u;
         started = 1;

@@ -8,7 +8,7 @@ from hdl.stores.publisher import Publisher
 from hdl.stores.result_view import ResultView
 from hdl.vision.blob import box_layout
 from hdl.vision.corners import corner_item
-from hdl.vision.matching.geometry import marker_layout
+from hdl.vision.refining.shapes import refined_layout
 
 __all__ = ["blob_store", "corner_store", "marker_store", "publisher", "result_view"]
 
@@ -17,7 +17,11 @@ __all__ = ["blob_store", "corner_store", "marker_store", "publisher", "result_vi
 _KEPT = {
     "blob": (box_layout, ("x_min", "y_min", "x_max", "y_max", "area")),
     "corner": (corner_item, ("x", "y", "score", "arc", "bright")),
-    "marker": (marker_layout, ("v1", "v2", "v3", "v4", "box_min", "box_max", "area", "gap_area")),
+    "marker": (
+        refined_layout,
+        ("v1", "v2", "v3", "v4", "box_min", "box_max", "area", "gap_area")
+        + ("offset1", "offset2", "offset3", "offset4", "quality"),
+    ),
 }
 
 
@@ -51,5 +55,5 @@ def result_view(config):
 def publisher(*, width, height):
     """The publisher of the sensor's three streams."""
     return Publisher(
-        blob=box_layout(width, height), corner=corner_item(width, height), marker=marker_layout(width, height)
+        blob=box_layout(width, height), corner=corner_item(width, height), marker=refined_layout(width, height)
     )

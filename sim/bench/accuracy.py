@@ -21,16 +21,34 @@ def wrong_order(bench):
     return bench.score.wrong_order
 
 
-@measurement("vertex_rms_px", "Vertices of found markers, rms", "px", target=at_most(1.3))
+@measurement("vertex_rms_px", "Vertices of found markers, rms", "px", target=at_most(0.05))
 def vertex_rms_px(bench):
     """Root mean square distance of the vertices from the true ones."""
     return bench.score.rms_px
 
 
-@measurement("vertex_p95_px", "Vertices of found markers, 95 % within", "px", target=at_most(2.0))
+@measurement("vertex_p95_px", "Vertices of found markers, 95 % within", "px", target=at_most(0.1))
 def vertex_p95_px(bench):
     """What 95 % of the vertices are within."""
     return bench.score.p95_px
+
+
+@measurement("vertex_rms_whole_px", "The same in whole pixels, rms", "px", target=at_most(1.3))
+def vertex_rms_whole_px(bench):
+    """Root mean square distance of the vertices that were not refined."""
+    return bench.whole_score.rms_px
+
+
+@measurement("found_rate_hard", "Markers found with more blur and noise, less contrast", "", target=at_least(0.95))
+def found_rate_hard(bench):
+    """Part of the rendered markers that were found, in whatever order."""
+    return bench.hard_score.found_rate
+
+
+@measurement("vertex_rms_hard_px", "Their vertices, rms", "px", target=at_most(0.15))
+def vertex_rms_hard_px(bench):
+    """Root mean square distance of the vertices from the true ones."""
+    return bench.hard_score.rms_px
 
 
 @measurement("false_markers_photographs", "False markers in 20 photographs", "", target=at_most(0))

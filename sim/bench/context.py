@@ -4,6 +4,7 @@ import functools
 import itertools
 
 from sim.bench.score import Score, score_frame
+from sim.models.refine import sub_pixel
 from sim.photos import photographs
 from sim.results import Settings
 from sim.scene import random_marker_scene, render
@@ -75,26 +76,39 @@ class Bench:
             results += sensor.run(batch, self.settings)
         return results
 
-    @functools.cached_property
-    def scenes(self):
-        """The random frames: side 40 to 200 px, tilt 0 to 60 degrees, any roll, nominal light and noise."""
-        return [
-            render(
-                random_marker_scene(
-                    seed, side_px=(40, 200), tilt_deg=(0, 60), blur_px=0.7, noise_sigma=3, black=40, white=200
-                )
-            )
-            for seed in self.progress(range(self.frames), "rendering")
+    def _score(self, name, **light):
+        """(Score of refined vertices, Score of whole-pixel ones) over random frames: side 40 to 200 px, tilt 0 to 60
+        degrees, any roll."""
+        scenes = [
+            render(random_marker_scene(seed, side_px=(40, 200), tilt_deg=(0, 60), **light))
+            for seed in self.progress(range(self.frames), f"rendering {name} markers")
         ]
+        refined, whole = Score(), Score()
+        results = self._run([scene.image for scene in scenes], f"{name} markers")
+        for scene, result in zip(scenes, results, strict=True):
+            true = [marker["vertices"] for marker in scene.truth]
+            refined += score_frame(sub_pixel(result.markers), true)
+            whole += score_frame(result.markers["vertices"], true)
+        return refined, whole
 
     @functools.cached_property
+    def _nominal(self):
+        return self._score("nominal", blur_px=0.7, noise_sigma=3, black=40, white=200)
+
+    @property
     def score(self):
-        """Score over the random frames."""
-        total = Score()
-        results = self._run([scene.image for scene in self.scenes], "random markers")
-        for scene, result in zip(self.scenes, results, strict=True):
-            total += score_frame(result.markers["vertices"], [marker["vertices"] for marker in scene.truth])
-        return total
+        """Score over the random frames in nominal light, blur and noise."""
+        return self._nominal[0]
+
+    @property
+    def whole_score(self):
+        """The same of whole-pixel vertices."""
+        return self._nominal[1]
+
+    @functools.cached_property
+    def hard_score(self):
+        """Score over the same poses with more blur, more noise and less contrast."""
+        return self._score("hard", blur_px=1.2, noise_sigma=8, black=70, white=170)[0]
 
     @functools.cached_property
     def five_markers(self):

@@ -6,6 +6,7 @@ import numpy as np
 
 from firmware.reference import Pose, PoseError, PoseEstimate, estimate_pose
 from sim.cli.options import PoseSource
+from sim.models.refine import sub_pixel
 
 __all__ = ["MarkerPose", "firmware_poses", "reference_poses"]
 
@@ -20,9 +21,10 @@ class MarkerPose:
 
 
 def reference_poses(markers, camera, side_mm):
-    """MarkerPose of each of MARKER records, by the reference in double precision."""
+    """MarkerPose of each of REFINED_MARKER records, by the reference in double precision."""
     return [
-        MarkerPose(estimate_pose(marker["vertices"], camera, side_mm), PoseSource.REFERENCE, None) for marker in markers
+        MarkerPose(estimate_pose(vertices, camera, side_mm), PoseSource.REFERENCE, None)
+        for vertices in sub_pixel(markers)
     ]
 
 

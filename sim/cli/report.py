@@ -1,6 +1,9 @@
 """A frame's result as JSON has it, with the poses of its markers."""
 
+import numpy as np
+
 from firmware.reference import PoseError
+from sim.models.refine import RESIDUAL_SCALE, Quality, sub_pixel
 
 __all__ = ["blobs_report", "corners_report", "frame_report"]
 
@@ -29,12 +32,24 @@ def _pose_report(pose):
     return {"R": pose.R.tolist(), "t_mm": pose.t_mm.tolist(), "rms_px": float(pose.rms_px)}
 
 
+def _quality_report(marker):
+    """How well a marker's refined vertices are known; where they are not refined they are whole pixels."""
+    flags = Quality(int(marker["flags"]))
+    return {
+        "rms_px": float(np.sqrt(marker["residual"] / RESIDUAL_SCALE)),
+        "points": int(marker["points"]),
+        **{flag.name.lower(): flag in flags for flag in Quality},
+    }
+
+
 def _marker_report(marker, pose):
     """Entry of a marker and its MarkerPose; ``pose_error`` says why where there is no pose."""
     estimate = pose.estimate
     report = {
         "box": marker["box"].tolist(),
-        "vertices": marker["vertices"].tolist(),
+        "vertices": sub_pixel(marker).tolist(),
+        "vertices_px": marker["vertices"].tolist(),
+        "quality": _quality_report(marker),
         "pose": _pose_report(estimate.pose),
         "other_pose": _pose_report(estimate.other),
         "pose_source": str(pose.source),

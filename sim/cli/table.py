@@ -69,6 +69,6 @@ def markers_table(report):
     for column in ("", "vertices px", "position mm", "angles °", "fit px"):
         table.add_column(column)
     for index, marker in enumerate(report["markers"], 1):
-        vertices = (f"V{corner} {x:g}, {y:g}" for corner, (x, y) in enumerate(marker["vertices"], 1))
+        vertices = (f"V{corner} {x:.2f}, {y:.2f}" for corner, (x, y) in enumerate(marker["vertices"], 1))
         table.add_row(str(index), "\n".join(vertices), *_pose_cells(marker))
     return table

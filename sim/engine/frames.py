@@ -6,7 +6,7 @@ from hdl.config import SMALLEST_FRAME
 from hdl.pixels import CameraPixel
 from sim.engine.packing import pack
 from sim.models.fast import CORNER
-from sim.models.matching import MARKER
+from sim.models.refine import REFINED_MARKER
 from sim.results import BOX, FrameResult
 
 __all__ = ["HEADER", "camera_pixels", "checked_frames", "feed_arrays", "frame_result", "marker_items", "marker_words",
@@ -56,6 +56,7 @@ def setting_writes(settings, columns, rows):
         ("blob_min", {"width": settings.blob_min_width, "height": settings.blob_min_height}),
         ("blob_min_area", {"pixels": settings.blob_min_area}),
         ("marker_min", {"side": settings.marker_min_side}),
+        ("edge", {"contrast": settings.edge_contrast}),
     ]
 
 
@@ -70,9 +71,22 @@ def feed_arrays(pixels, idle):
 
 
 def marker_words(marker):
-    """The words that software reads of one of a model's markers: four vertices, two corners of the box, two areas."""
+    """The words that software reads of one of a model's markers: four vertices, two corners of the box, two areas, four
+    offsets, the quality, and three of nothing."""
     points = np.concatenate([marker["vertices"], marker["box"].reshape(2, 2)])
-    return [*(int(x) | int(y) << 16 for x, y in points), int(marker["area"]), int(marker["gap_area"])]
+    quality = int(marker["residual"]) | int(marker["points"]) << 12 | int(marker["flags"]) << 24
+    return [
+        *(_pair_word(point) for point in points),
+        int(marker["area"]),
+        int(marker["gap_area"]),
+        *(_pair_word(offset) for offset in marker["offsets"]),
+        *(quality, 0, 0, 0),
+    ]
+
+
+def _pair_word(pair):
+    x, y = (int(value) & 0xFFFF for value in pair)
+    return x | y << 16
 
 
 def _low(word):
@@ -89,11 +103,15 @@ def _pairs(words):
 
 
 def marker_items(words):
-    """Items of a marker window, uint32 (N, 8), as :data:`~sim.models.matching.MARKER`."""
-    markers = np.zeros(len(words), MARKER)
+    """Items of a marker window, uint32 (N, 16), as :data:`~sim.models.refine.REFINED_MARKER`."""
+    markers = np.zeros(len(words), REFINED_MARKER)
     markers["vertices"] = _pairs(words[:, :4])
     markers["box"] = _pairs(words[:, 4:6]).reshape(-1, 4)
     markers["area"], markers["gap_area"] = words[:, 6], words[:, 7]
+    markers["offsets"] = _pairs(words[:, 8:12]).astype(np.int16)
+    quality = words[:, 12]
+    markers["residual"], markers["points"] = quality & 0xFFF, quality >> 12 & 0xFFF
+    markers["flags"] = quality >> 24
     return markers
 
 
@@ -105,7 +123,7 @@ def frame_result(header, blobs, corners, markers):
     header : dict of str to int
         Words of the registers in :data:`HEADER`.
     blobs, corners, markers : ndarray
-        uint32 (N, 4), (N, 2), (N, 8): items of the windows.
+        uint32 (N, 4), (N, 2), (N, 16): items of the windows.
     """
     boxes = np.zeros(len(blobs), BOX)
     boxes["box"] = _pairs(blobs[:, :2]).reshape(-1, 4)

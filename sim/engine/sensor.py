@@ -28,7 +28,7 @@ __all__ = ["RtlSensor"]
 _DRIVER = pathlib.Path(__file__).with_name("sensor.cpp")
 _TOP = pathlib.Path(__file__).with_name("sensor_top.v")
 #: Clocks after the last pixel in which every frame must be published: a full queue of candidates takes 11,000.
-_PATIENCE = 100_000
+_PATIENCE = 500_000
 
 
 class RtlSensor:
@@ -221,7 +221,7 @@ class RtlSensor:
         frame = np.asarray(frame, np.uint8)
         rows, columns = frame.shape[:2]
         self.configure(settings, columns, rows)
-        fed, _ = self.feed(camera_pixels(frame), publications=1, patience=20_000, live=True)
+        fed, _ = self.feed(camera_pixels(frame), publications=1, patience=200_000, live=True)
         words = 3 + next(w.stride for w in self.map.windows if w.name == "live_window") // 4
         count = self._library.sensor_marker_count(self._handle)
         seen = np.zeros((0, words), np.int64)

@@ -14,6 +14,7 @@ import numpy as np
 import pupil_apriltags
 
 from sim.evaluation.patterns import APRILTAG, ARUCO, ARUCO_ID, ARUCO_WORDS, TAG_ID
+from sim.models.refine import sub_pixel
 from sim.models.sensor import ModelSensor
 from sim.pattern import RASTERPOSE
 
@@ -44,7 +45,7 @@ class RasterPose:
     def detect(self, image, settings):
         """Detected in a picture (480, 640); ``settings`` are the sensor's."""
         (result,) = self._sensor.run([image], settings)
-        return Detected(list(result.markers["vertices"].astype(float)), 0)
+        return Detected(list(sub_pixel(result.markers)), 0)
 
 
 class Aruco:

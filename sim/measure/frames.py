@@ -11,6 +11,7 @@ from sim.engine.build import EngineError
 from sim.engine.frames import camera_pixels
 from sim.engine.system import Traffic
 from sim.marker import Lens, marker_pose
+from sim.models.refine import sub_pixel
 from sim.scene import Scene, random_marker_scene, render
 
 __all__ = [
@@ -81,8 +82,8 @@ def expected_lines(results, stamps, first=0):
     for frame, (result, stamp) in enumerate(zip(results, stamps, strict=True), first):
         time = moment(stamp)
         lines.append(frame_sentence(frame, time, len(result.markers), 0))
-        for number, marker in enumerate(result.markers):
-            answer = estimate_pose(marker["vertices"], dtype=np.float32, polish_steps=0)
+        for number, vertices in enumerate(sub_pixel(result.markers)):
+            answer = estimate_pose(vertices, dtype=np.float32, polish_steps=0)
             pose = answer.pose
             told = pose and (pose.t_mm, quaternion(pose.R), pose.rms_px, ambiguity(answer))
             lines.append(pose_sentence(frame, time, number, answer.error.value, *(told or ())))

@@ -3,9 +3,11 @@
 import numpy as np
 
 from hdl.config import SensorConfig
+from sim.models.edges import edge_points
 from sim.models.fast import find_corners
 from sim.models.grey import grey
 from sim.models.matching import find_markers
+from sim.models.refine import refine_markers
 from sim.models.segmentation import find_blobs
 from sim.models.threshold import threshold
 from sim.results import BOX, FrameResult, Settings
@@ -44,6 +46,13 @@ class ModelSensor:
         boxes["box"], boxes["area"] = blobs["box"], blobs["area"]
         corners = find_corners(level, n=settings.fast_n, threshold=settings.fast_threshold, max_arc=settings.max_arc)
         markers = find_markers(blobs, columns, rows, settings.marker_min_side)
+
+        if len(markers):
+            points = edge_points(level, settings.threshold, settings.bright, settings.edge_contrast)
+        else:
+            points = None, None  # they take longer than all the rest, and are not looked at
+        bits = (max(self.config.width, self.config.height) - 1).bit_length()
+        markers = refine_markers(markers, *points, columns, rows, bits)
 
         def kept(found, depth):
             return found[:depth], max(len(found) - depth, 0)

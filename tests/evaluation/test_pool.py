@@ -95,8 +95,8 @@ def test_collected_figures_are_those_of_the_rows(store):
     assert (entry["parameter"], entry["values"], entry["frames"], entry["seeds"]) == ("contrast", [10, 160], 6, [0, 5])
     assert entry["base"]["noise"] == 3 and set(entry["systems"]) == set(systems)
     assert entry["systems"]["rasterpose"]["found_rate"][1] == 1
-    sharp, coarse = (entry["systems"][name]["vertex_rms_px"][1] for name in ("aruco_subpix", "rasterpose"))
-    assert 0.1 < sharp < 0.5 < coarse < 1.6
+    lines, corners = (entry["systems"][name]["vertex_rms_px"][1] for name in ("rasterpose", "aruco_subpix"))
+    assert 0 < lines < 0.1 < corners < 0.5
 
 
 def test_sample_is_drawn_by_its_seed_and_equal_in_the_verilog(store):

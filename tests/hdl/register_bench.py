@@ -30,7 +30,7 @@ REGISTERS = {
         0x14,
         {
             f"{name}_overflow": (bit, 1, F, 0)
-            for bit, name in enumerate(("blob", "corner", "marker", "candidate", "queue"))
+            for bit, name in enumerate(("blob", "corner", "marker", "candidate", "queue", "refining"))
         },
     ),
     "frame_size": (0x18, {"columns": (0, 16, S, CONFIG.width), "rows": (16, 16, S, CONFIG.height)}),
@@ -42,6 +42,7 @@ REGISTERS = {
     "irq_enable": (0x30, {"published": (0, 1, S, 0), "marker": (1, 1, S, 0)}),
     "irq_status": (0x34, {"published": (0, 1, F, 0), "marker": (1, 1, F, 0)}),
     "hold": (0x38, {"keep": (0, 1, S, 0)}),
+    "edge": (0x3C, {"contrast": (0, 8, S, 16)}),
     "frame": (0x40, {"number": (0, 32, V, 0)}),
     "live": (0x44, {"frame": (0, 16, V, 0), "markers": (16, 16, V, 0)}),
     "blobs": (0x48, {"count": (0, 16, V, 0), "dropped": (16, 16, V, 0)}),
@@ -71,7 +72,9 @@ REGISTERS = {
     )
 }
 _POINT = {"x": (0, 16), "y": (16, 16)}
-_MARKER = [_POINT] * 6 + [{"pixels": (0, 32)}] * 2
+_FLAGS = ("refined", "few", "lost", "border", "clipped", "astray")
+_QUALITY = {"residual": (0, 12), "points": (12, 12), **{name: (24 + k, 1) for k, name in enumerate(_FLAGS)}}
+_MARKER = [_POINT] * 6 + [{"pixels": (0, 32)}] * 2 + [_POINT] * 4 + [_QUALITY, {}, {}, {}]
 #: Name -> (offset, items, fields of each word, name of the item).
 WINDOWS = {
     "marker_window": (0x1000, 64, _MARKER, "marker"),

@@ -75,14 +75,14 @@ def engine():
 
 @pytest.mark.parametrize("seed", range(4))
 def test_random_transfers(engine, seed):
-    given = stimulus(every_address(seed), 12000, seed, strobe_bits=15)
+    given = stimulus(every_address(seed), 12000, seed, strobe_bits=16)
     engine.reset()
     model = check(engine.run(given), given, sensor_bench(WIDTH, HEIGHT), REGISTERS)
-    assert len(model.events) == 15
+    assert len(model.events) == 16
 
 
 def test_events_at_the_same_time_as_their_clearing(engine):
-    given = stimulus(np.array([0x14, 0x30, 0x34, 0x80]), 8000, 7, strobe_bits=15)
+    given = stimulus(np.array([0x14, 0x30, 0x34, 0x80]), 8000, 7, strobe_bits=16)
     given["strobes"] &= np.random.default_rng(8).integers(0, 1 << 15, 8000)
     engine.reset()
     check(engine.run(given), given, sensor_bench(WIDTH, HEIGHT), REGISTERS)
@@ -140,7 +140,7 @@ def test_map_is_what_was_asked_for():
 
 
 def test_emitted_verilog(simulator):
-    given = stimulus(every_address(5), 1500, 5, strobe_bits=15)
+    given = stimulus(every_address(5), 1500, 5, strobe_bits=16)
     run = cocotb_run(sensor_bench, simulator, given, width=WIDTH, height=HEIGHT)
     check(run, given, sensor_bench(WIDTH, HEIGHT), REGISTERS)
     assert_same(run, StreamEngine(sensor_bench, WIDTH, HEIGHT).run(given))
@@ -175,8 +175,10 @@ def test_what_the_hardware_does_not_know_is_refused(field, tmp_path):
 def test_windows_must_fit():
     with pytest.raises(RDLCompileError):
         sensor_map(SensorConfig(blob_depth=2048))
-    largest = sensor_map(SensorConfig(blob_depth=1024, corner_depth=4096, marker_depth=128))
-    assert [window.count for window in largest.windows] == [128, 128, 1024, 4096]
+    with pytest.raises(RDLCompileError):
+        sensor_map(SensorConfig(marker_depth=128))
+    largest = sensor_map(SensorConfig(blob_depth=1024, corner_depth=4096, marker_depth=64))
+    assert [window.count for window in largest.windows] == [64, 64, 1024, 4096]
 
 
 #: Where the parts of the system are, and some registers of each.

@@ -24,9 +24,5 @@ def memory_errors(text):
         for statement in re.split(r"^  (?! |end\b)", module, flags=re.MULTILINE):
             if statement.startswith(("always @(posedge ", "initial", "reg ")):
                 continue
-            errors += [
-                statement.strip()
-                for memory in memories
-                if re.search(r"(?<!\w)" + re.escape(memory) + r" *\[", statement)
-            ]
+            errors += [statement.strip() for memory in memories if re.search(r"(?<!\w)" + re.escape(memory) + r" *\[", statement)]
     return errors

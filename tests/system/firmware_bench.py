@@ -8,6 +8,7 @@ from firmware.reference.sentence import frame_sentence, moment, parse, pose_sent
 from firmware.toolchain import Image
 from hdl.config import CLOCK_HZ
 from sim.engine.frames import camera_pixels
+from sim.models.refine import sub_pixel
 from sim.models.sensor import ModelSensor
 from sim.results import Settings
 
@@ -21,6 +22,7 @@ __all__ = [
     "statuses",
     "stream",
     "told_frames",
+    "told_in_haste",
 ]
 
 
@@ -36,9 +38,10 @@ def begin(rtl, image, columns, rows, settings=None, **firmware):
     return started.lines
 
 
-def found(frame, settings=None):
-    """Vertices (N, 4, 2) of the markers that a sensor stores of a frame, by its model."""
-    return ModelSensor(640, 480).run([frame], settings or Settings())[0].markers["vertices"]
+def found(frame, settings=None, *, whole=False):
+    """Vertices (N, 4, 2) of the markers that a sensor stores of a frame, by its model; or whole-pixel ones."""
+    markers = ModelSensor(640, 480).run([frame], settings or Settings())[0].markers
+    return markers["vertices"] if whole else sub_pixel(markers)
 
 
 def frame_lines(number, first, vertices, skipped, *, camera=None, side_mm=113.0, clock_hz=CLOCK_HZ):
@@ -54,6 +57,13 @@ def frame_lines(number, first, vertices, skipped, *, camera=None, side_mm=113.0,
             parts = pose.t_mm, quaternion(pose.R), pose.rms_px, ambiguity(estimate)
             lines.append(pose_sentence(number, time, index, 0, *parts))
     return lines
+
+
+def told_in_haste(lines, number, first, frame, skipped):
+    """Whether the sentences are those of a frame with too many markers, or too soon after another, for all to be
+    refined: some are told by their whole-pixel vertices."""
+    fine, whole = (frame_lines(number, first, found(frame, whole=coarse), skipped) for coarse in (False, True))
+    return len(lines) == len(fine) and all(line in pair for line, *pair in zip(lines, fine, whole, strict=True))
 
 
 def stream(frames):

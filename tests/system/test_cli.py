@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from firmware.reference import Camera, estimate_pose
+from sim.models.refine import Quality, sub_pixel
 from sim.models.sensor import ModelSensor
 from sim.pictures import build_for, read_picture
 
@@ -39,7 +40,13 @@ def test_run_json_has_the_agreed_form(sim, pictures):
         assert corner["polarity"] in ("dark", "bright")
     assert len(frame["markers"]) == 3
     for marker in frame["markers"]:
-        assert set(marker) == {"box", "vertices", "pose", "other_pose", "pose_source", "pose_clocks"}
+        assert set(marker) == {
+            *("box", "vertices", "vertices_px", "quality"),
+            *("pose", "other_pose", "pose_source", "pose_clocks"),
+        }
+        assert set(marker["quality"]) == {"rms_px", "points", *(flag.name.lower() for flag in Quality)}
+        assert marker["quality"]["refined"] and marker["quality"]["points"] > 9
+        assert 0 < marker["quality"]["rms_px"] < 0.2
         assert (marker["pose_source"], marker["pose_clocks"]) == ("reference", None)
         assert np.shape(marker["vertices"]) == (4, 2)
         assert set(marker["pose"]) == POSE_KEYS
@@ -52,14 +59,17 @@ def test_run_says_what_the_sensor_says(sim, pictures):
     (result,) = ModelSensor().run([cv2.imread(str(pictures / "three.png"), cv2.IMREAD_GRAYSCALE)])
     assert [blob["area"] for blob in frame["blobs"]] == result.blobs["area"].tolist()
     assert [corner["score"] for corner in frame["corners"]] == result.corners["score"].tolist()
-    assert [marker["vertices"] for marker in frame["markers"]] == result.markers["vertices"].tolist()
+    assert [marker["vertices_px"] for marker in frame["markers"]] == result.markers["vertices"].tolist()
+    assert [marker["vertices"] for marker in frame["markers"]] == sub_pixel(result.markers).tolist()
 
 
 def test_run_finds_the_papers_marker(sim, pictures):
     (frame,) = run_json(sim, pictures / "paper.png")["frames"]
     (marker,) = frame["markers"]
     assert marker["box"] == [254, 174, 393, 313]
-    assert marker["vertices"] == [[254, 174], [393, 174], [393, 313], [254, 313]]
+    assert marker["vertices_px"] == [[254, 174], [393, 174], [393, 313], [254, 313]]
+    edges = [[253.5, 173.5], [393.5, 173.5], [393.5, 313.5], [253.5, 313.5]]
+    assert np.abs(np.subtract(marker["vertices"], edges)).max() < 0.02
     assert np.allclose(marker["pose"]["R"], np.eye(3), atol=0.02)
 
 
@@ -110,7 +120,7 @@ def test_run_writes_a_table_pictures_and_json(sim, pictures, tmp_path):
     target = tmp_path / "deep" / "run.json"
     result = sim("run", *files, "--engine", "model", "--out", tmp_path / "out", "--json", target)
     assert result.code == 0 and result.err == ""
-    assert "3 markers" in result.out and "254, 174" in result.out
+    assert "3 markers" in result.out and "V1 253.5" in result.out
     assert [frame["file"] for frame in json.loads(target.read_text())["frames"]] == [str(f) for f in files]
     for file in files:
         overlay = cv2.imread(str(tmp_path / "out" / f"{file.stem}.overlay.png"))

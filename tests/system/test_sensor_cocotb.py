@@ -16,6 +16,8 @@ from tests.system.test_sensor import scene
 
 #: Clocks that software needs after a reset.
 SETUP = 20
+#: Clocks in which the markers of a small frame are refined.
+REFINING = 9000
 
 
 def encoded(number, result, first, last):
@@ -37,13 +39,18 @@ def encoded(number, result, first, last):
     words += [word for item in items for word in item]
     for k, marker in enumerate(result.markers):  # The paper's port, and the window in between.
         coordinates = marker["vertices"].reshape(-1).tolist()
-        words += [word for turn in zip(coordinates, items[k - 1], strict=True) for word in turn]
+        words += [word for turn in zip(coordinates, items[k - 1][: len(coordinates)], strict=True) for word in turn]
     return words
 
 
 def pixel_clocks(beats, idle):
     """Clocks from the reset to each pixel."""
     return SETUP + np.cumsum(np.broadcast_to(idle, beats.shape) + 1)
+
+
+def pauses(frames):
+    """Clocks before each pixel: none, but at the start of a frame, so that the one before is refined."""
+    return np.concatenate([np.r_[REFINING, np.zeros(frame.size - 1, np.int64)] for frame in frames])
 
 
 def spread(parts):
@@ -101,15 +108,17 @@ def check(got, expected):
 
 
 def test_small_frames(simulator):
-    """A reset in the middle of a frame, two frames back to back, and one with idle clocks."""
+    """A reset in the middle of a frame, two frames without idle clocks within, and one with."""
     size = (64, 48)
     random = np.random.default_rng(1)
     frames = [marker_grid(random, 48, 64, (28, 32)), marker_frame(48, 64, [(5, 9, 20, 90), (37, 20, 22, 0)])]
     noisy = marker_frame(48, 64, [(30, 12, 31, 10)]) * 0.6 + random.normal(40, 3, (48, 64))
     frames.append(np.clip(noisy, 0, 255).astype(np.uint8))
     pixels = [camera_pixels(frame).astype(np.int64) for frame in frames]
-    idle = [0 * pixels[0], 0 * pixels[1], random_idle(len(pixels[2]), 0.3, seed=2, longest=4)]
-    parts = [(np.concatenate(pixels)[:5000], 0), (np.concatenate(pixels), np.concatenate(idle))]
+    idle = pauses(frames)
+    parts = [(np.concatenate(pixels)[:5000], idle[:5000].copy())]
+    idle[2 * len(pixels[2]) :] += random_idle(len(pixels[2]), 0.3, seed=2, longest=4)
+    parts.append((np.concatenate(pixels), idle))
     models = ModelSensor(*size).run(frames)
     assert [len(model.markers) for model in models] == [1, 2, 1]
     expected = []
@@ -118,7 +127,7 @@ def test_small_frames(simulator):
         for number in numbers:
             first = number * 48 * 64
             expected.append(encoded(number, models[number], int(time[first]), int(time[first + 48 * 64 - 1])))
-    check(play(simulator, size, parts, 1500)[0], expected)
+    check(play(simulator, size, parts, REFINING)[0], expected)
 
 
 def test_full_frame():
@@ -129,4 +138,4 @@ def test_full_frame():
     (model,) = ModelSensor().run([frame])
     assert len(model.markers) == 5
     part = (camera_pixels(frame).astype(np.int64), 0)
-    check(play("verilator", (640, 480), [part], 4000)[0], [encoded(0, model, SETUP, SETUP + 640 * 480 - 1)])
+    check(play("verilator", (640, 480), [part], 20_000)[0], [encoded(0, model, SETUP, SETUP + 640 * 480 - 1)])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.engine.frames import camera_pixels
+from sim.engine.frames import camera_pixels, marker_words
 from sim.models.sensor import ModelSensor
 from sim.results import Settings
 from tests.patterns import noise
@@ -134,7 +134,7 @@ def test_live_window():
     before = snapshot(rtl)
     rtl.write("irq_status", marker=1)
     pixels, fed = camera_pixels(frames[1]), 0
-    for rows, count in ((60, 0), (74, 1), (150, 1), (165, 3), (350, 5), (478, 6), (479, 6)):
+    for rows, count in ((60, 0), (86, 1), (150, 1), (176, 3), (362, 5), (478, 6), (479, 6)):
         _, results = rtl.feed(pixels[fed : rows * 640])
         fed = rows * 640
         for _ in range(200):
@@ -142,10 +142,11 @@ def test_live_window():
         assert not results and live == {"frame": 1, "markers": count}, f"after {rows} rows"
         assert rtl.read("irq_status")["marker"] == (count > 0)
         for k, marker in enumerate(model.markers[:count]):
-            value = words(rtl, "live_window", 8 * (k + 1))[8 * k :]
+            value = words(rtl, "live_window", 16 * (k + 1))[16 * k :]
             assert points(value[:4]) == marker["vertices"].tolist()
             assert points(value[4:6]) == marker["box"].reshape(2, 2).tolist()
-            assert value[6:] == [marker["area"], marker["gap_area"]]
+            assert value[6:8] == [marker["area"], marker["gap_area"]]
+            assert value == marker_words(marker)
         assert snapshot(rtl) == before
     _, results = rtl.feed(pixels[fed:], publications=1)
     compare([result for _, result in results], frames[1:])

@@ -49,7 +49,7 @@ def test_times_are_those_of_the_frame_that_is_held():
     rtl.write("frame_size", columns=64, rows=48)
     assert times(rtl) == (0, 0)
     for turn in range(3):
-        fed, _ = rtl.feed(pixels, publications=1, patience=3000)  # Nothing reads, so it waits as long.
+        fed, _ = rtl.feed(pixels, publications=1, patience=12_000)  # Nothing reads, so it waits as long.
         expected = tuple(pixel_times(rtl, pixels, fed)[[0, -1]].tolist())
         rtl.write("control", enable=1, hold=1)
         assert rtl.read("status")["held"] and rtl.read("frame")["number"] == 4 * turn and times(rtl) == expected

@@ -7,9 +7,10 @@ from hdl.config import SensorConfig
 from hdl.sensor import Sensor
 from hdl.stores.sensor_stores import result_view
 from sim.engine.frames import camera_pixels
+from sim.models.refine import Quality
 from sim.models.sensor import ModelSensor
 from tests.shapes import marker_frame, marker_grid
-from tests.system.test_sensor_cocotb import check, encoded, pixel_clocks, play
+from tests.system.test_sensor_cocotb import REFINING, check, encoded, pauses, pixel_clocks, play
 
 SIZE = (64, 48)
 
@@ -33,23 +34,29 @@ def items(result):
             "box_max": point(marker["box"][2:]),
             "area": int(marker["area"]),
             "gap_area": int(marker["gap_area"]),
+            **{f"offset{k + 1}": point(marker["offsets"][k]) for k in range(4)},
+            "quality": {
+                "residual": int(marker["residual"]),
+                "points": int(marker["points"]),
+                **{flag.name.lower(): int(flag in Quality(int(marker["flags"]))) for flag in Quality},
+            },
         }
         for marker in result.markers
     ]
 
 
 def test_view(simulator):
-    """Three frames back to back; software reads each over the bus, and a viewer what it can in every clock."""
+    """Three frames; software reads each over the bus, and a viewer what it can in every clock."""
     random = np.random.default_rng(8)
     frames = [marker_grid(random, 48, 64, (28, 32)), marker_frame(48, 64, [(5, 9, 20, 90), (37, 20, 22, 0)])]
     frames.append(marker_frame(48, 64, [(20, 9, 30, 20)]))
     config = SensorConfig(width=SIZE[0], height=SIZE[1])
     pixels = np.concatenate([camera_pixels(frame).astype(np.int64) for frame in frames])
     verilog = emit.to_verilog(Sensor(config=config, has_view=True), emit.TOP)
-    words, seen = play(simulator, SIZE, [(pixels, 0)], 1500, verilog, view_seed=1)
+    words, seen = play(simulator, SIZE, [(pixels, pauses(frames))], REFINING, verilog, view_seed=1)
 
     models = ModelSensor(*SIZE).run(frames)
-    time = pixel_clocks(pixels, 0) - 1
+    time = pixel_clocks(pixels, pauses(frames)) - 1
     firsts = [number * 48 * 64 for number in range(len(frames))]
     check(
         words,
