@@ -11,6 +11,8 @@ from tests.shapes import marker_frame, marker_grid
 from tests.system.test_sensor import sensor
 from tests.system.test_sensor_protocol import broken, check_stream, pixel_times
 
+#: Clocks after which a counter tells an event at the latest (hdl/regs/counters.py).
+LAG = 72
 PORT = [f"{axis}{vertex}" for vertex in range(1, 5) for axis in "xy"]
 
 pytestmark = pytest.mark.skipif(bool(missing("verilator")), reason=str(missing("verilator")))
@@ -56,6 +58,7 @@ def test_times_are_those_of_the_frame_that_is_held():
         for part in (pixels[:700], pixels, pixels[:64], pixels[:2000], pixels[2000:], pixels, pixels[:1]):
             rtl.feed(part)
             assert times(rtl) == expected, f"turn {turn}, after {len(part)} pixels"
+        rtl.feed(np.zeros(LAG, np.uint32))
         assert rtl.read("frames_skipped")["count"] == 3 * turn + 3
         rtl.write("control", enable=1)
 
