@@ -12,9 +12,9 @@ COMMAND   ``name : Out(width)``       what software writes, while ``name_written
           ``name_written : Out(1)``   a strobe in the clock of the write
 PULSE     ``name : Out(1)``           a strobe in the clock in which software writes 1
 FLAG      ``name_set : In(1)``        sets it; at the same time as software clears it, it stays set
-COUNTER   ``name_incr : In(1)``       adds 1; at the same time as software clears it, it becomes 1. Counters of
-                                      32 bits share a memory, and tell up to 72 clocks later what they have
-                                      counted: :class:`~hdl.regs.counters.Counters`
+COUNTER   ``name_incr : In(1)``       adds 1; at the same time as software clears it, it becomes 1. Two or
+                                      more of 32 bits share a memory, and tell what they have counted some
+                                      clocks later: :class:`~hdl.regs.counters.Counters`
 CONSTANT  no port
 ========  ==========================  ======================================================================
 
@@ -227,7 +227,8 @@ class RegisterBank(wiring.Component):
             for field in register.fields
             if field.behaviour == Behaviour.COUNTER and field.width == 32
         ]
-        if not self._counted:
+        if len(self._counted) < 2:  # one has nobody to share a memory with
+            self._counted = []
             return []
         m.submodules.counters = counters = Counters(count=len(self._counted), width=32)
         hits = [self._hit(register.offset // 4) for register, _ in self._counted]

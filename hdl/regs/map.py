@@ -93,7 +93,7 @@ class Window:
     """``count`` items of ``stride`` bytes from byte ``offset`` on."""
 
     name: str
-    item: str  #: name of the register file that each item is
+    item: str  #: name of the register file that each item is; of the window if it has none
     offset: int
     count: int
     stride: int
@@ -166,7 +166,12 @@ def _window(node):
     if count < 2 or count & (count - 1) or stride & (stride - 1) or offset % (count * stride):
         raise ValueError(f"{node.get_path()} must have a power of two of items and of words, and an address to match")
     return Window(
-        node.inst_name.lower(), node.orig_type_name.lower(), offset, count, stride, _registers(node.children())
+        node.inst_name.lower(),
+        (node.orig_type_name or node.inst_name).lower(),
+        offset,
+        count,
+        stride,
+        _registers(node.children()),
     )
 
 

@@ -15,12 +15,10 @@ import numpy as np
 from sim.models.edges import PART_BITS
 from sim.models.matching import MARKER
 
-__all__ = ["OFFSET_SCALE", "REFINED_MARKER", "REFINEMENT", "RESIDUAL_SCALE", "Quality", "refine", "refine_markers",
-           "sub_pixel"]  # fmt: skip
+__all__ = ["REFINED_MARKER", "REFINEMENT", "Quality", "refine", "refine_markers", "sub_pixel"]
 
 _FRACTION, _SLOPE_FRACTION, _OFFSET_FRACTION = 10, 16, 8
-OFFSET_SCALE = 1 << _OFFSET_FRACTION
-RESIDUAL_SCALE = 1 << 2 * PART_BITS
+_OFFSET_SCALE = 1 << _OFFSET_FRACTION
 _QUOTIENT = 17  #: bits
 _HALF = 1 << (_FRACTION - PART_BITS)  #: half a step of a point's part, and half a step of a distance
 #: Points this far from the line count, in 64ths of a pixel, first and second.
@@ -56,7 +54,7 @@ REFINED_MARKER = np.dtype(MARKER.descr + REFINEMENT.descr)
 
 def sub_pixel(markers):
     """Vertices (..., 4, 2), px, of :data:`REFINED_MARKER` records: refined where they could be."""
-    return markers["vertices"] + markers["offsets"] / OFFSET_SCALE
+    return markers["vertices"] + markers["offsets"] / _OFFSET_SCALE
 
 
 def _quotient(dividend, divisor):
@@ -155,7 +153,7 @@ def _meet(one, other):
     drop = _FRACTION - _OFFSET_FRACTION
     second = ((base << _SLOPE_FRACTION) + first * slope) >> (_SLOPE_FRACTION + drop)
     offset = (second, first >> drop) if turned else (first >> drop, second)
-    if not all(-_FARTHEST * OFFSET_SCALE <= o < _FARTHEST * OFFSET_SCALE for o in offset):
+    if not all(-_FARTHEST * _OFFSET_SCALE <= o < _FARTHEST * _OFFSET_SCALE for o in offset):
         raise _FitError(Quality.ASTRAY)
     return offset
 

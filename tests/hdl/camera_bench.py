@@ -9,7 +9,7 @@ from hdl.pixels import CameraPixel
 from sim.engine import fields
 from tests.hdl.harness import simulate
 
-__all__ = ["State", "colours", "play"]
+__all__ = ["State", "check_reset", "check_set_up_again", "colours", "play"]
 
 
 class State(NamedTuple):
@@ -49,3 +49,22 @@ def colours(payloads):
     """(N, 3) of pixels, ``sof`` and ``eol``."""
     found = fields(np.asarray(payloads, np.uint32).reshape(-1, 1), CameraPixel)
     return np.stack([found[name] for name in "rgb"], axis=-1), found["sof"] != 0, found["eol"] != 0
+
+
+def check_reset(found, expected):
+    """Of two pictures (2, H, W, 3) a reset cut the first: what came before is right, the rest of it is missing, and the
+    next is whole."""
+    seen, sof, eol = found
+    _, rows, columns, _ = expected.shape
+    expected, size = expected.reshape(-1, 3), rows * columns
+    before = len(seen) - size
+    assert columns < before < size - columns
+    assert (seen[:before] == expected[:before]).all() and (seen[before:] == expected[size:]).all()
+    index = np.append(np.arange(before), np.arange(size))
+    assert (sof == (index == 0)).all() and (eol == (index % columns == columns - 1)).all()
+
+
+def check_set_up_again(state, writes):
+    """All writes came twice."""
+    again = len(writes) // 2
+    assert state.done and [write[1:] for write in writes[again:]] == [write[1:] for write in writes[:again]]

@@ -178,6 +178,8 @@ class Model:
         self.state = {key: rest[4] for key, rest in self.fields.items()}
         self.events = [key for key, rest in self.fields.items() if rest[3] in (F, N)]
         self.counted = [key for key, rest in self.fields.items() if rest[3] == N and rest[2] == 32]
+        if len(self.counted) < 2:  # one alone is a register
+            self.counted = []
         self.counters = Counters(len(self.counted), 32) if self.counted else None
 
     def word(self, address, clock):

@@ -10,7 +10,7 @@ from sim.models.d5m import D5mCamera
 from sim.models.demosaic import as_received, demosaic
 from sim.models.framer import framer
 from tests.hdl import harness
-from tests.hdl.camera_bench import colours, play
+from tests.hdl.camera_bench import check_reset, check_set_up_again, colours, play
 from tests.hdl.tb_camera import Op
 
 COLUMNS, ROWS = 24, 6
@@ -109,18 +109,8 @@ def test_broken_video_goes_on_as_it_is(run):
 
 
 def test_reset_in_the_middle_of_a_picture(run):
-    """What came before is right, the rest of that picture is missing, the next is whole, and the camera is set up."""
-    seen, sof, eol = part(run, 8)
-    expected = np.stack([as_received(picture) for picture in pictures(2, 5)]).reshape(-1, 3)
-    size = COLUMNS * ROWS
-    before = len(seen) - size
-    assert COLUMNS < before < size - COLUMNS
-    assert (seen[:before] == expected[:before]).all() and (seen[before:] == expected[size:]).all()
-    index = np.append(np.arange(before), np.arange(size))
-    assert (sof == (index == 0)).all() and (eol == (index % COLUMNS == COLUMNS - 1)).all()
-    states, writes, *_ = run
-    again = len(writes) // 2
-    assert states[9].done and [write[1:] for write in writes[again:]] == [write[1:] for write in writes[:again]]
+    check_reset(part(run, 8), np.stack([as_received(picture) for picture in pictures(2, 5)]))
+    check_set_up_again(run[0][9], run[1])
 
 
 @pytest.mark.parametrize("is_turned", [False, True])

@@ -9,7 +9,7 @@ from sim.models.framer import framer
 from sim.models.ov7670 import Ov7670Camera
 from sim.models.rgb565 import as_received, rgb565
 from tests.hdl import harness
-from tests.hdl.camera_bench import colours, play
+from tests.hdl.camera_bench import check_reset, check_set_up_again, colours, play
 from tests.hdl.tb_camera import Op
 
 COLUMNS, ROWS = 40, 6
@@ -114,18 +114,8 @@ def test_broken_video_goes_on_as_it_is(run):
 
 
 def test_reset_in_the_middle_of_a_picture(run):
-    """What came before is right, the rest of that picture is missing, the next is whole, and the camera is set up."""
-    seen, sof, eol = part(run, 7)
-    expected = np.stack([as_received(picture) for picture in pictures(2, 5)]).reshape(-1, 3)
-    size = COLUMNS * ROWS
-    before = len(seen) - size
-    assert COLUMNS < before < size - COLUMNS
-    assert (seen[:before] == expected[:before]).all() and (seen[before:] == expected[size:]).all()
-    index = np.append(np.arange(before), np.arange(size))
-    assert (sof == (index == 0)).all() and (eol == (index % COLUMNS == COLUMNS - 1)).all()
-    states, writes, *_ = run
-    again = len(writes) // 2
-    assert states[8].done and [write[1:] for write in writes[again:]] == [write[1:] for write in writes[:again]]
+    check_reset(part(run, 7), np.stack([as_received(picture) for picture in pictures(2, 5)]))
+    check_set_up_again(run[0][8], run[1])
 
 
 def test_colours_keep_full_scale():

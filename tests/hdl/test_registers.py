@@ -121,6 +121,23 @@ def test_every_behaviour_as_emitted(small_map, simulator):
     check(cocotb_run(BankBench(small_map), simulator, given), given, BankBench(small_map), SMALL)
 
 
+def test_a_large_counter_alone_and_a_window_without_a_name(tmp_path):
+    """One counter of 32 bits has no memory and no lag; a window's items are called like it if they have no name."""
+    (tmp_path / "alone.rdl").write_text("""addrmap alone {
+        default regwidth = 32;
+        reg { field { sw = rw; hw = na; counter; incrsaturate; onwrite = wclr; } count[31:0] = 0; } EVENTS @ 0x0;
+        external regfile { reg { field { sw = r; hw = w; } a[31:0]; } A @ 0x0; } LIST[4] @ 0x10;
+    };""")
+    registers = read_map(tmp_path / "alone.rdl", "alone")
+    assert [(window.name, window.item) for window in registers.windows] == [("list", "list")]
+    (tmp_path / "alone.rdl").write_text("""addrmap alone { default regwidth = 32;
+        reg { field { sw = rw; hw = na; counter; incrsaturate; onwrite = wclr; } count[31:0] = 0; } EVENTS @ 0x0; };""")
+    registers = read_map(tmp_path / "alone.rdl", "alone")
+    engine = StreamEngine(lambda width, height: BankBench(registers), 16, 16)
+    given = {"bus": pack(BUS, address=[0] * 40, read=1, write=0, write_data=0), "strobes": np.ones(40, int)}
+    check(engine.run(given), given, BankBench(registers), {"events": (0x0, {"count": (0, 32, "counter", 0)})})
+
+
 def test_one_of_several_maps(tmp_path):
     (tmp_path / "small.rdl").write_text(SMALL_MAP)
     assert read_map(tmp_path / "small.rdl", "small").name == "small"

@@ -60,7 +60,7 @@ def test_is_a_module_of_that_name(name):
 
 
 #: Blocks that all others are parts of.
-WHOLES = [SYSTEM, AVALON, "d5m", "ov7670", "display", "dvi"]
+WHOLES = [SYSTEM, AVALON, "d5m", "ov7670", "display", "dvi", "refining"]
 
 
 def test_same_bytes_on_every_run(tmp_path):

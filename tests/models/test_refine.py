@@ -7,7 +7,7 @@ from sim.marker import Lens, marker_pose
 from sim.models.edges import edge_points, smooth
 from sim.models.grey import grey
 from sim.models.matching import find_markers
-from sim.models.refine import OFFSET_SCALE, Quality, refine_markers
+from sim.models.refine import Quality, refine_markers, sub_pixel
 from sim.models.segmentation import find_blobs
 from sim.models.threshold import threshold
 from sim.scene import Scene, random_marker_scene, render
@@ -19,7 +19,7 @@ def refined(image, level=120):
     rows, columns = frame.shape
     markers = find_markers(find_blobs(threshold(frame, level)), columns, rows)
     result = refine_markers(markers, *edge_points(frame, level), columns, rows)
-    return markers["vertices"], markers["vertices"] + result["offsets"] / OFFSET_SCALE, result["flags"]
+    return markers["vertices"], sub_pixel(result), result["flags"]
 
 
 def rms(scenes, level=120):

@@ -105,6 +105,7 @@ class _Bench:
                 await self.clocks(2)
             case Op.PAUSE:
                 self._source.set_pause_generator(_pauses(first) if first else None)
+                self._source.pause = False  # It would stay as the generator before left it.
             case Op.CLOCKS:
                 await self.clocks(first)
             case Op.WRITE:

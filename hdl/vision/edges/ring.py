@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
 from hdl.pixels import unstalled
-from hdl.vision.edges.shapes import point_layout
+from hdl.vision.edges.shapes import number_bits, point_layout
 
 __all__ = ["BLOCK_BITS", "EdgeRing"]
 
@@ -57,7 +57,7 @@ class EdgeRing(wiring.Component):
         self._depth = depth
         self._blocks = ((height - 1) >> BLOCK_BITS) + 1
         self._point = point_layout(width, height)
-        number = max(bits_for(width * height - 1), bits_for(depth))
+        number = number_bits(width, height, depth)
         super().__init__(
             {
                 "i_across": In(unstalled(self._point)),

@@ -4,7 +4,7 @@ from amaranth import unsigned
 from amaranth.lib import data
 from amaranth.utils import bits_for
 
-__all__ = ["ACROSS", "DOWN", "PART_BITS", "REACH", "SMALL", "point_layout"]
+__all__ = ["ACROSS", "DOWN", "PART_BITS", "REACH", "SMALL", "number_bits", "point_layout"]
 
 #: A crossing's part of a pixel has this many bits.
 PART_BITS = 6
@@ -17,6 +17,11 @@ ACROSS, DOWN = (6, 1), (1, 6)
 
 #: Pixels before the first that has all neighbours.
 SMALL = 11
+
+
+def number_bits(width, height, depth):
+    """Bits of a crossing's number: modulo a frame's pixels at least, and the ``depth`` of the ring."""
+    return max(bits_for(width * height - 1), bits_for(depth))
 
 
 def point_layout(width, height):

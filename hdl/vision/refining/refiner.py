@@ -7,7 +7,7 @@ from amaranth.utils import bits_for
 
 from hdl.pixels import ItemKind, unstalled
 from hdl.vision.edges.ring import BLOCK_BITS
-from hdl.vision.edges.shapes import point_layout
+from hdl.vision.edges.shapes import number_bits, point_layout
 from hdl.vision.matching.geometry import marker_layout
 from hdl.vision.refining.gather import DRAIN, Gather
 from hdl.vision.refining.outline import OUTLINE, Outline
@@ -65,8 +65,7 @@ class Refiner(wiring.Component):
 
     def __init__(self, *, width, height, depth):
         self._sizes = {"width": width, "height": height}
-        self._depth = depth
-        number = max(bits_for(width * height - 1), bits_for(depth))
+        number = number_bits(width, height, depth)
         self._scanner = {
             "rows": bits_for(height - 1),
             "blocks": bits_for(max(1, (height - 1) >> BLOCK_BITS)),
