@@ -24,5 +24,6 @@ def memory_errors(text):
         for statement in re.split(r"^  (?! |end\b)", module, flags=re.MULTILINE):
             if statement.startswith(("always @(posedge ", "initial", "reg ")):
                 continue
-            errors += [statement.strip() for memory in memories if re.search(r"(?<!\w)" + re.escape(memory) + r" *\[", statement)]
+            uses = (re.search(rf"(?<!\w){re.escape(memory)} *\[", statement) for memory in memories)
+            errors += [statement.strip() for use in uses if use]
     return errors
