@@ -34,6 +34,7 @@ class Sensor(wiring.Component):
                                 |                                                v   |
                                 |                                             matching -> refining -> marker store
                                 |-> edges, within refining ---------------------------------'
+                                |      '-> level -> threshold
                                 '-> corners ------------------------------> publisher -> corner store
 
     Throughput: one pixel a clock, any gaps or none. Latency: a marker is readable in the live window 7 rows and
@@ -114,7 +115,7 @@ class Sensor(wiring.Component):
             matching.kept.valid.eq(publisher.o_blob.valid),
         ]
         self._connect_settings(m, registers, framer, threshold, size_filter, corners, matching, publisher)
-        self._connect_refining(m, registers, framer, refining)
+        self._connect_refining(m, registers, framer, threshold, refining)
         self._connect_events(m, registers, framer, segmentation, matching, refining, publisher)
         stores, addresses = self._connect_stores(m, registers, publisher)
         self._connect_readers(m, publisher, stores, addresses)
@@ -128,7 +129,6 @@ class Sensor(wiring.Component):
             framer.enable.eq(registers.control.enable),
             framer.columns.eq(registers.frame_size.columns),
             framer.rows.eq(registers.frame_size.rows),
-            threshold.level.eq(registers.threshold.level),
             threshold.bright.eq(registers.control.bright),
             corners.n.eq(registers.fast.n),
             corners.threshold.eq(registers.fast.threshold),
@@ -144,9 +144,12 @@ class Sensor(wiring.Component):
         ]
 
     @staticmethod
-    def _connect_refining(m, registers, framer, refining):
+    def _connect_refining(m, registers, framer, threshold, refining):
         m.d.comb += [
             refining.threshold.eq(registers.threshold.level),
+            refining.automatic.eq(registers.threshold.automatic),
+            threshold.level.eq(refining.level),
+            registers.level.threshold.eq(refining.level),
             refining.bright.eq(registers.control.bright),
             refining.contrast.eq(registers.edge.contrast),
             refining.columns.eq(framer.frame_columns),

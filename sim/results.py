@@ -18,6 +18,8 @@ class Settings:
     ----------
     threshold : int
         0 to 255. Foreground is darker, or with ``bright`` not darker.
+    auto_threshold : bool
+        The threshold is the first frame's only; each later one has the level that the edges of the frame before tell.
     fast_n : int
         Contiguous pixels of the circle that make a corner, 9 to 12.
     fast_threshold : int
@@ -38,6 +40,7 @@ class Settings:
     """
 
     threshold: int = 120
+    auto_threshold: bool = False
     bright: bool = False
     fast_n: int = 10
     fast_threshold: int = 20

@@ -10,18 +10,26 @@ import pathlib
 
 from build import tools
 from build.synth.ecp5 import PART, ROUTER, netlist
+from firmware.layout import settings_bytes
 from firmware.toolchain.images import build as build_program
 from hdl.boards.emit import board_verilog
-from hdl.boards.ulx3s.clocks import OUTPUTS
+from hdl.boards.ulx3s.clocks import CLOCKS, PLLS, SYSTEM_HZ
 from hdl.boards.ulx3s.pins import constraints
 from hdl.boards.ulx3s.top import Ulx3s
 from hdl.system.cpu import cpu_licence, cpu_verilog
 
-__all__ = ["DEVICE", "NAME", "SEEDS", "Result", "TimingError", "make"]
+__all__ = ["DEVICE", "NAME", "SEEDS", "SETTINGS", "Result", "TimingError", "make"]
 
 NAME = "rasterpose_ulx3s"
 DEVICE = "LFE5U-85F-6BG381C"
 SEEDS = (1, 2, 3)
+
+#: What the program is told because the system's clock is not 50 MHz: 3 Mbaud, a tick of 10 ms, a watchdog of 2 s.
+SETTINGS = {
+    "uart_divisor": SYSTEM_HZ // 3_000_000,
+    "tick_clocks": SYSTEM_HZ // 100,
+    "watchdog_clocks": 2 * SYSTEM_HZ,
+}
 
 #: What nextpnr is asked for where the system's clock needs 1: it no longer improves what it thinks is fast enough, and
 #: what it thinks before routing is a few per cent too fast.
@@ -61,8 +69,12 @@ class Result:
 def clock_names(netlist):
     """Net -> what the board calls the output of the PLL that drives it; the tools take any name that the net has."""
     (top,) = (module for module in netlist["modules"].values() if module["attributes"].get("top"))
-    (pll,) = (cell for cell in top["cells"].values() if cell["type"] == "EHXPLLL")
-    outputs = {pll["connections"][f"CLK{output}"][0]: name for name, (output, _) in OUTPUTS.items()}
+    cells = {name: cell["connections"] for name, cell in top["cells"].items() if cell["type"] == "EHXPLLL"}
+    outputs = {
+        cells[f"clocks.{instance}"][f"CLK{output}"][0]: name
+        for instance, pll in PLLS.items()
+        for output, name in pll.outputs.items()
+    }
     return {net: outputs[entry["bits"][0]] for net, entry in top["netnames"].items() if entry["bits"][0] in outputs}
 
 
@@ -72,7 +84,7 @@ def read_report(report, seed, names):
     for net, entry in sorted(report["fmax"].items()):
         plain = net.removeprefix("$glbnet$").split("$TRELLIS_IO")[0]
         name = names.get(plain, plain)
-        needed = OUTPUTS[name][1] / 1e6 if name in OUTPUTS else entry["constraint"]
+        needed = CLOCKS[name] / 1e6 if name in CLOCKS else entry["constraint"]
         clocks[name] = (round(entry["achieved"], 2), round(needed, 2))
     cells = {
         name: (entry["used"], entry["available"])
@@ -84,7 +96,9 @@ def read_report(report, seed, names):
 
 def _write_sources(folder):
     folder.mkdir(parents=True, exist_ok=True)
-    top = Ulx3s(program=build_program("sensor").words.tolist())
+    image = build_program("sensor")
+    program = image.patched("settings", settings_bytes(image, **SETTINGS))
+    top = Ulx3s(program=program.words.tolist())
     licence = "".join(f"// {line}".rstrip() + "\n" for line in cpu_licence().splitlines())
     for name, text in {
         f"{NAME}.v": board_verilog(top, NAME),
@@ -97,7 +111,7 @@ def _write_sources(folder):
 def _aim(folder, names):
     """Write the constraint that asks for a faster system clock."""
     net = next(net for net, name in names.items() if name == "system")
-    megahertz = _AIM * OUTPUTS["system"][1] / 1e6
+    megahertz = _AIM * SYSTEM_HZ / 1e6
     (folder / f"{NAME}.aim.lpf").write_text(f'FREQUENCY NET "{net}" {megahertz:g} MHZ;\n')
 
 

@@ -50,15 +50,19 @@ def sensor_for(engine, pose, width, height):
 
 
 def run_frame(engine, pose, image, settings, camera, side_mm):
-    """FrameResult of a picture (H, W, 3), a MarkerPose for each of its markers, and what the firmware said of it."""
+    """FrameResult of a picture (H, W, 3), a MarkerPose for each of its markers, and what the firmware said of it.
+
+    With an automatic threshold the picture is shown twice, so that it is judged by its own.
+    """
+    shown = 2 if settings.auto_threshold else 1
     sensor = sensor_for(engine, pose, image.shape[1], image.shape[0])
     if pose is PoseSource.FIRMWARE:
         own = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
         with engine_errors(engine):
-            result, report = sensor.run(image, settings, side_mm=side_mm, **own)
+            result, report = sensor.run(image, settings, shown, side_mm=side_mm, **own)
         return result, firmware_poses(report.markers), sensor.traffic().lines
     with engine_errors(engine):
-        (result,) = sensor.run([image], settings)
+        result = sensor.run([image] * shown, settings)[-1]
     return result, reference_poses(result.markers, camera, side_mm), None
 
 

@@ -13,6 +13,7 @@ from sim.results import Settings
 __all__ = [
     "DEFAULTS",
     "FRAME",
+    "AutoThresholdOption",
     "BrightOption",
     "DaskOption",
     "Engine",
@@ -60,6 +61,10 @@ PoseOption = Annotated[
 ]
 JsonOption = Annotated[str | None, typer.Option("--json", help="File for the result, - for standard output.")]
 ThresholdOption = Annotated[int, typer.Option(help="Foreground is darker than this, 0 to 255.")]
+AutoThresholdOption = Annotated[
+    bool,
+    typer.Option("--auto-threshold", help="Take the threshold from the picture's own edges: it is shown twice."),
+]
 BrightOption = Annotated[bool, typer.Option("--bright", help="Foreground is what is not darker instead.")]
 FastNOption = Annotated[int, typer.Option(help="Contiguous circle pixels that make a corner, 9 to 12.")]
 FastThresholdOption = Annotated[int, typer.Option(help="Contrast of a corner, exclusive, 0 to 255.")]

@@ -37,6 +37,7 @@ def run(
     engine: options.EngineOption = options.Engine.RTL,
     pose: options.PoseOption = None,
     threshold: options.ThresholdOption = options.DEFAULTS.threshold,
+    auto_threshold: options.AutoThresholdOption = options.DEFAULTS.auto_threshold,
     bright: options.BrightOption = options.DEFAULTS.bright,
     fast_n: options.FastNOption = options.DEFAULTS.fast_n,
     fast_threshold: options.FastThresholdOption = options.DEFAULTS.fast_threshold,
@@ -65,6 +66,7 @@ def run(
     """
     settings = options.checked_settings(
         threshold=threshold,
+        auto_threshold=auto_threshold,
         bright=bright,
         fast_n=fast_n,
         fast_threshold=fast_threshold,

@@ -51,7 +51,8 @@ def setting_writes(settings, columns, rows):
     return [
         ("control", {"enable": 1, "bright": settings.bright}),
         ("frame_size", {"columns": columns, "rows": rows}),
-        ("threshold", {"level": settings.threshold}),
+        ("threshold", {"level": settings.threshold}),  # also what an automatic one starts from
+        ("threshold", {"level": settings.threshold, "automatic": settings.auto_threshold}),
         ("fast", {"threshold": settings.fast_threshold, "n": settings.fast_n, "max_arc": settings.max_arc}),
         ("blob_min", {"width": settings.blob_min_width, "height": settings.blob_min_height}),
         ("blob_min_area", {"pixels": settings.blob_min_area}),

@@ -231,7 +231,7 @@ class RtlSystem:
         )  # fmt: skip
         return fed, told
 
-    def run(self, frame, settings, **firmware):
+    def run(self, frame, settings, shown=1, **firmware):
         """FrameResult and Report of one frame.
 
         Parameters
@@ -239,6 +239,8 @@ class RtlSystem:
         frame : ndarray
             (H, W) grey or (H, W, 3) RGB uint8.
         settings : Settings
+        shown : int
+            How often the frame is shown, one after the other has been told of; the last time counts.
         firmware
             Fields of the firmware's settings that are not its defaults.
 
@@ -251,10 +253,11 @@ class RtlSystem:
         """
         (frame,), rows, columns = checked_frames([frame], self.config)
         self.configure(settings, columns, rows, **firmware)
-        self.forget()
-        _, told = self.feed(camera_pixels(frame), frames=1)
-        if told != 1:
-            raise EngineError("the firmware told nothing of the frame")
+        for _ in range(shown):
+            self.forget()
+            _, told = self.feed(camera_pixels(frame), frames=1)
+            if told != 1:
+                raise EngineError("the firmware told nothing of the frame")
         result = self.published()
         return dataclasses.replace(result, clocks=rows * columns), self.report()
 

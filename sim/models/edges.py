@@ -9,11 +9,14 @@ plateaus must differ by a least contrast.
 
 import numpy as np
 
-__all__ = ["EDGE_POINT", "MARGIN", "PART_BITS", "RECIPROCALS", "edge_points", "smooth"]
+__all__ = ["EDGE_POINT", "LAST_ROWS", "MARGIN", "PART_BITS", "RECIPROCALS", "edge_points", "frame_level", "smooth"]
 
 PART_BITS = 6
 #: Pixels on either side of a pair that its plateaus reach, and one for smoothing.
 MARGIN = 5
+
+#: Rows at a frame's end whose edges do not count for its level.
+LAST_ROWS = 5
 
 #: A crossing between (x, y) and its right neighbour, or the one below: ``part`` 64ths of a pixel beyond the first, cut
 #: off. ``leaving``: the first is foreground. ``clipped``: a plateau is at the end of the scale.
@@ -37,12 +40,10 @@ def smooth(level):
     return result
 
 
-def _crossings(level, threshold, bright, least_contrast):
-    """Points between the pixels of each row of smoothed levels, in raster order."""
-    rows, columns = level.shape
-    span = columns - 2 * MARGIN - 1
-    if span <= 0 or rows < 3:
-        return np.zeros(0, EDGE_POINT)
+def _edges(level, least_contrast):
+    """Of pairs of neighbours in the rows of smoothed levels but the first and last: (found, rises, the middle pixels of
+    both plateaus, low, high, twice how far the middle lies beyond the darker of the pair, the pair's difference)."""
+    span = level.shape[1] - 2 * MARGIN - 1
     level = level[1:-1].astype(np.int32)
 
     def pixels(offset):
@@ -50,21 +51,32 @@ def _crossings(level, threshold, bright, least_contrast):
 
     sides = [np.stack([pixels(k) for k in triple]) for triple in ((-4, -3, -2), (3, 4, 5))]
     first, second = pixels(0), pixels(1)
-    dark = [side[1] < threshold for side in sides]
-    rises = dark[0]
+    rises = sides[0][1] < sides[1][1]
     low = np.where(rises, sides[0].min(0), sides[1].min(0))
     high = np.where(rises, sides[1].max(0), sides[0].max(0))
     darker, lighter = np.where(rises, first, second), np.where(rises, second, first)
     beyond = low + high - 2 * darker  # both are twice as large as they should be
     step = lighter - darker
-    found = (dark[0] != dark[1]) & (high - low >= least_contrast) & (beyond >= 0) & (beyond < 2 * step)
-    y, x = np.nonzero(found)
+    found = (high - low >= least_contrast) & (beyond >= 0) & (beyond < 2 * step)
+    return found, rises, sides[0][1], sides[1][1], low, high, beyond, step
+
+
+def _has_none(level):
+    return level.shape[1] < 2 * MARGIN + 2 or level.shape[0] < 3
+
+
+def _crossings(level, threshold, bright, least_contrast):
+    """Points between the pixels of each row of smoothed levels, in raster order."""
+    if _has_none(level):
+        return np.zeros(0, EDGE_POINT)
+    found, rises, before, after, low, high, beyond, step = _edges(level, least_contrast)
+    y, x = np.nonzero(found & ((before < threshold) != (after < threshold)))
     points = np.zeros(len(x), EDGE_POINT)
     points["x"], points["y"] = x + MARGIN, y + 1
     step = step[y, x]
     part = np.minimum(beyond[y, x] * RECIPROCALS[step] >> 15 - PART_BITS, (1 << PART_BITS) - 1)
-    points["part"] = np.where(dark[0][y, x], part, (1 << PART_BITS) - 1 - part)
-    points["leaving"] = dark[0][y, x] ^ bright
+    points["part"] = np.where(rises[y, x], part, (1 << PART_BITS) - 1 - part)
+    points["leaving"] = rises[y, x] ^ bright
     points["clipped"] = (low[y, x] <= _CLIPPED_LOW) | (high[y, x] >= _CLIPPED_HIGH)
     return points
 
@@ -86,3 +98,19 @@ def edge_points(level, threshold, bright=False, least_contrast=16):
     down = _crossings(smoothed.T, threshold, bright, least_contrast)
     down["x"], down["y"] = down["y"].copy(), down["x"].copy()
     return across, np.sort(down, order=("y", "x"))
+
+
+def frame_level(level, least_contrast=16):
+    """Grey level in the middle between dark and light at the edges of a frame (H, W) uint8; None if it has none.
+
+    The mean of the middles of all edges across rows, weighed by their contrast beyond the least one, rounded. The last
+    rows take no part.
+    """
+    smoothed = smooth(level)
+    part = smoothed[: max(len(level) - LAST_ROWS + 1, 0)]
+    if _has_none(part):
+        return None
+    found, _, _, _, low, high, _, _ = _edges(part, least_contrast)
+    weights, middles = (high - low - least_contrast)[found].astype(np.int64), (low + high)[found]
+    total = int(weights.sum())
+    return (int((weights * middles).sum()) + total) // (2 * total) if total else None

@@ -15,10 +15,11 @@ import numpy as np
 from sim.models.edges import PART_BITS
 from sim.models.matching import MARKER
 
-__all__ = ["REFINED_MARKER", "REFINEMENT", "Quality", "refine", "refine_markers", "sub_pixel"]
+__all__ = ["REFINED_MARKER", "REFINEMENT", "RESIDUAL_SCALE", "Quality", "refine", "refine_markers", "sub_pixel"]
 
 _FRACTION, _SLOPE_FRACTION, _OFFSET_FRACTION = 10, 16, 8
 _OFFSET_SCALE = 1 << _OFFSET_FRACTION
+RESIDUAL_SCALE = 1 << 2 * PART_BITS
 _QUOTIENT = 17  #: bits
 _HALF = 1 << (_FRACTION - PART_BITS)  #: half a step of a point's part, and half a step of a distance
 #: Points this far from the line count, in 64ths of a pixel, first and second.

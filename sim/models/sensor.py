@@ -1,9 +1,11 @@
 """The whole pixel pipeline as a model: a picture in, what the hardware's stores hold of it out, bit for bit."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from hdl.config import SensorConfig
-from sim.models.edges import edge_points
+from sim.models.edges import edge_points, frame_level
 from sim.models.fast import find_corners
 from sim.models.grey import grey
 from sim.models.matching import find_markers
@@ -29,11 +31,17 @@ class ModelSensor:
 
     def run(self, frames, settings=Settings()):  # noqa: B008 - frozen
         """Results of ``frames``, each (H, W) grey or (H, W, 3) RGB uint8, as a list of :class:`FrameResult`."""
-        return [self._frame(np.asarray(frame), settings) for frame in frames]
+        results = []
+        for frame in map(np.asarray, frames):
+            level = grey(frame if frame.ndim == 3 else np.broadcast_to(frame[..., None], (*frame.shape, 3)))
+            results.append(self._frame(level, settings))
+            if settings.auto_threshold:
+                found = frame_level(level, settings.edge_contrast)
+                settings = settings if found is None else replace(settings, threshold=found)
+        return results
 
-    def _frame(self, frame, settings):
-        rows, columns = frame.shape[:2]
-        level = grey(frame if frame.ndim == 3 else np.broadcast_to(frame[..., None], (*frame.shape, 3)))
+    def _frame(self, level, settings):
+        rows, columns = level.shape
         every = find_blobs(threshold(level, settings.threshold, settings.bright))
         size = every["box"][:, 2:] - every["box"][:, :2] + 1
         large = (

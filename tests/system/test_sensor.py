@@ -106,6 +106,7 @@ def random_settings(random):
     fast_n = int(random.integers(9, 13))
     return Settings(
         threshold=int(random.choice((0, 1, 80, 110, 120, 130, 160, 200, 255))),
+        auto_threshold=bool(random.integers(2)),
         bright=bool(random.integers(2)),
         fast_n=fast_n,
         fast_threshold=int(random.choice((0, 1, 5, 20, 40, 100, 254, 255))),
@@ -121,6 +122,16 @@ def test_rendered_scenes_without_a_gap():
     frames = [scene(seed, count=5, side_px=(40, 130), gradient=20 * seed) for seed in range(5)]
     expected = check(sensor(), frames, note="scenes 0 to 4")
     assert sum(len(result.markers) for result in expected) >= 22
+
+
+def test_automatic_threshold():
+    """In every light the second frame is judged by the first, and LEVEL says so."""
+    settings, rtl = Settings(auto_threshold=True), sensor()
+    for seed, (black, white) in enumerate([(20, 120), (90, 150), (30, 240), (90, 240)]):
+        frames = [scene(20 + seed, count=3, side_px=(40, 130), black=black, white=white, gradient=20)] * 2
+        (first, second) = check(rtl, frames, settings, note=f"{black} and {white}")
+        assert len(second.markers) == 3 >= len(first.markers)
+        assert abs(rtl.read("level")["threshold"] - (black + white) / 2) < 12
 
 
 def test_papers_frame():

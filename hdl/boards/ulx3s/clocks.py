@@ -1,34 +1,65 @@
-"""Clocks of the ULX3S: Lattice's EHXPLLL makes the system's, the monitor's and the cable's of the 25 MHz oscillator.
+"""Clocks of the ULX3S: two of Lattice's EHXPLLL make them of the 25 MHz oscillator.
 
-The PLL runs at 500 MHz (ECP5: 400 to 800). Its feedback is the cable's clock, so all outputs keep their phase to it.
+One makes the monitor's clock and the cable's, five times as fast, the other the system's: no frequency within a PLL's
+range is a multiple of all three. Each PLL's feedback is its first clock, so its others keep their phase to that one.
 
 Model: ``sim/boards/ehxplll.v``.
 """
 
-from amaranth import Instance, Module
+import dataclasses
+
+from amaranth import Instance, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-__all__ = ["INPUT_HZ", "OUTPUTS", "SYSTEM_HZ", "Clocks"]
+__all__ = ["CLOCKS", "INPUT_HZ", "PLLS", "SYSTEM_HZ", "Clocks", "Pll"]
 
 INPUT_HZ = 25_000_000
 
-_PLL_HZ = 500_000_000
 
-#: Name -> (the PLL's output, Hz).
-OUTPUTS = {"shift": ("OP", 125_000_000), "pixel": ("OS", 25_000_000), "system": ("OS2", 50_000_000)}
+@dataclasses.dataclass(frozen=True)
+class Pll:
+    """One PLL.
 
-SYSTEM_HZ = OUTPUTS["system"][1]
+    Parameters
+    ----------
+    divisor : int
+        Of its input.
+    inner_hz : int
+        What it runs at, 400 to 800 MHz.
+    clocks : dict
+        Name -> Hz, in the order of its outputs; the first is compared with the divided input.
+    """
+
+    divisor: int
+    inner_hz: int
+    clocks: dict
+
+    @property
+    def outputs(self):
+        """What Lattice calls an output -> name of the clock."""
+        return dict(zip(("OP", "OS", "OS2", "OS3"), self.clocks, strict=False))
+
+
+PLLS = {
+    "video": Pll(1, 500_000_000, {"shift": 125_000_000, "pixel": 25_000_000}),
+    "system": Pll(5, 630_000_000, {"system": 45_000_000}),
+}
+
+#: Name -> Hz.
+CLOCKS = {name: hertz for pll in PLLS.values() for name, hertz in pll.clocks.items()}
+
+SYSTEM_HZ = CLOCKS["system"]
 
 
 class Clocks(wiring.Component):
-    """The PLL.
+    """The PLLs.
 
     Members
     -------
     oscillator : :py:`In(1)`
     shift, pixel, system : :py:`Out(1)`
-        125, 25 and 50 MHz.
+        125, 25 and 45 MHz; the system's is unrelated to the others.
     locked : :py:`Out(1)`
         They are stable. Belongs to no clock.
     """
@@ -41,16 +72,24 @@ class Clocks(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
+        locked = Signal(len(PLLS))
+        m.d.comb += self.locked.eq(locked.all())
+        for number, (name, pll) in enumerate(PLLS.items()):
+            m.submodules[name] = self._instance(pll, locked[number])
+        return m
+
+    def _instance(self, pll, locked):
         parameters = {}
-        for name, (output, hertz) in OUTPUTS.items():
+        for output, name in pll.outputs.items():
             parameters |= {
                 f"p_CLK{output}_ENABLE": "ENABLED",
-                f"p_CLK{output}_DIV": _PLL_HZ // hertz,
+                f"p_CLK{output}_DIV": pll.inner_hz // pll.clocks[name],
                 f"p_CLK{output}_CPHASE": 3,
                 f"p_CLK{output}_FPHASE": 0,
                 f"o_CLK{output}": getattr(self, name),
             }
-        m.submodules.pll = Instance(
+        feedback = pll.outputs["OP"]
+        return Instance(
             "EHXPLLL",
             a_FREQUENCY_PIN_CLKI=str(INPUT_HZ // 1_000_000),
             a_ICP_CURRENT="12",
@@ -64,13 +103,13 @@ class Clocks(wiring.Component):
             p_OUTDIVIDER_MUXC="DIVC",
             p_OUTDIVIDER_MUXD="DIVD",
             p_FEEDBK_PATH="CLKOP",
-            p_CLKI_DIV=1,
-            p_CLKFB_DIV=OUTPUTS["shift"][1] // INPUT_HZ,
+            p_CLKI_DIV=pll.divisor,
+            p_CLKFB_DIV=pll.clocks[feedback] * pll.divisor // INPUT_HZ,
             **parameters,
             i_RST=0,
             i_STDBY=0,
             i_CLKI=self.oscillator,
-            i_CLKFB=self.shift,
+            i_CLKFB=getattr(self, feedback),
             i_PHASESEL0=0,
             i_PHASESEL1=0,
             i_PHASEDIR=1,
@@ -78,6 +117,5 @@ class Clocks(wiring.Component):
             i_PHASELOADREG=1,
             i_PLLWAKESYNC=0,
             i_ENCLKOP=0,
-            o_LOCK=self.locked,
+            o_LOCK=locked,
         )
-        return m

@@ -2,7 +2,7 @@
 
 ::
 
-    clk_25mhz -> PLL -> system 50 MHz, pixel 25 MHz (and cam_xclk), shift 125 MHz; cam_pclk is a clock of its own
+    clk_25mhz -> PLLs -> system 45 MHz, pixel 25 MHz (and cam_xclk), shift 125 MHz; cam_pclk is a clock of its own
 
     OV7670 ---> camera ---> system ---> UART (FTDI)
                               '-------> display ---> DVI ---> GPDI
@@ -54,7 +54,7 @@ class Ulx3s(Elaboratable):
     mode : VideoMode
         Of the monitor.
     clock_hz : int
-        What everything but the PLL is told of the system's clock. Less shortens simulations.
+        What everything but the PLLs is told of the system's clock. Less shortens simulations.
     tick_us, start_clocks : int
         Unit of the camera's pauses, and length of the reset and of bouncing, for simulations.
 

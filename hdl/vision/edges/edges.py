@@ -7,6 +7,7 @@ from amaranth.utils import bits_for
 
 from hdl.pixels import GreyPixel, unstalled
 from hdl.vision.delay import Delay
+from hdl.vision.edges.frame_level import FrameLevel
 from hdl.vision.edges.locator import LATENCY, Locator
 from hdl.vision.edges.neighbours import Neighbours
 from hdl.vision.edges.shapes import SMALL, point_layout
@@ -24,6 +25,7 @@ class Edges(wiring.Component):
     ::
 
         i -> smooth -> neighbours -> locator across -> o_across
+                           |   |            '-> frame level -> level
                            |   '---> locator down ---> o_down
                            '-> row_start, row, settled, complete
 
@@ -32,7 +34,7 @@ class Edges(wiring.Component):
     that pixel's place. The 5 pixels along the border have none.
 
     Throughput: a pixel a clock, and a crossing of either kind with each. Latency: 12 clocks from that pixel.
-    Memory: 11 rows of levels (56 kbit at 640 pixels), two tables of 256 reciprocals. Two multipliers.
+    Memory: 11 rows of levels (56 kbit at 640 pixels), two tables of 256 reciprocals. Three multipliers.
 
     Parameters
     ----------
@@ -42,8 +44,13 @@ class Edges(wiring.Component):
     Members
     -------
     i : In(unstalled(GreyPixel))
-    threshold, contrast : In(8), bright : In(1)
-        As :class:`~hdl.vision.edges.locator.Locator` says; taken with a frame's first pixel.
+    threshold, contrast : In(8), automatic, bright : In(1)
+        As :class:`~hdl.vision.edges.locator.Locator` says; taken with a frame's first pixel. With ``automatic`` the
+        threshold is the level of the frame before, see :class:`~hdl.vision.edges.frame_level.FrameLevel`.
+    rows : In(16)
+        Of the frame in progress.
+    level : Out(8)
+        The threshold in force for a frame that starts now.
     o_across, o_down : Out(unstalled(point_layout(width, height)))
     row_start : Out(1), row : Out
         Strobe: crossings found with pixels of this row may follow from now on, after those of the row before.
@@ -64,7 +71,10 @@ class Edges(wiring.Component):
                 "i": In(unstalled(GreyPixel)),
                 "threshold": In(8),
                 "contrast": In(8),
+                "automatic": In(1),
                 "bright": In(1),
+                "rows": In(16),
+                "level": Out(8),
                 "o_across": Out(unstalled(point)),
                 "o_down": Out(unstalled(point)),
                 "row_start": Out(1),
@@ -81,7 +91,16 @@ class Edges(wiring.Component):
         m.submodules.neighbours = near = Neighbours(**self._sizes)
         connect(m, flipped(self.i), smooth.i)
         connect(m, smooth.o, near.i)
-        given = Cat(self.threshold, self.contrast, self.bright)
+        m.submodules.frame_level = frame_level = FrameLevel(**self._sizes)
+        m.d.comb += [
+            frame_level.row_start.eq(self.row_start),
+            frame_level.row.eq(self.row),
+            frame_level.rows.eq(self.rows),
+            frame_level.start.eq(self.threshold),
+            frame_level.automatic.eq(self.automatic),
+            self.level.eq(frame_level.level),
+        ]
+        given = Cat(self.level, self.contrast, self.bright)
         taken, held = (Signal(len(given), name=n, reset_less=True) for n in ("taken", "held"))
         with m.If(self.i.valid & self.i.p.first):
             m.d.sync += taken.eq(given)
@@ -104,9 +123,10 @@ class Edges(wiring.Component):
 
         m.submodules.place = place = Delay(width=len(near.x) + len(near.y), steps=LATENCY)
         m.d.comb += place.i.eq(Cat(near.x, near.y))
+        locators = {}
         for name, least_x, least_y in (("across", SMALL, 2), ("down", 2, SMALL)):
             locator, o = Locator(), getattr(self, f"o_{name}")
-            m.submodules[name] = locator
+            m.submodules[name] = locators[name] = locator
             m.d.comb += [
                 locator.valid.eq(near.valid & (near.x >= least_x) & (near.y >= least_y)),
                 locator.pixels.eq(getattr(near, name)),
@@ -115,4 +135,5 @@ class Edges(wiring.Component):
                 Cat(o.p.x, o.p.y).eq(place.o),
                 *(o.p[field].eq(getattr(locator, field)) for field in ("part", "leaving", "clipped")),
             ]
+        m.d.comb += [getattr(frame_level, name).eq(getattr(locators["across"], name)) for name in ("edge", "middle", "excess")]
         return m

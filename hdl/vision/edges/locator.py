@@ -40,6 +40,9 @@ class Locator(wiring.Component):
         The middle pixel of one plateau must be less than ``threshold``, the other must not; the plateaus must differ by
         ``contrast``.
     found : Out(1), part : Out(PART_BITS), leaving, clipped : Out(1)
+    edge : Out(1), middle : Out(9), excess : Out(8)
+        The same without regard to ``threshold``; twice the level in the middle, and how much the plateaus differ by
+        more than ``contrast``.
 
     Model: :func:`sim.models.edges.edge_points`.
     """
@@ -53,6 +56,9 @@ class Locator(wiring.Component):
     part: Out(PART_BITS)
     leaving: Out(1)
     clipped: Out(1)
+    edge: Out(1)
+    middle: Out(9)
+    excess: Out(8)
 
     def elaborate(self, platform):
         m = Module()
@@ -63,19 +69,25 @@ class Locator(wiring.Component):
         # 1: the dark plateau, the light one, the dark pixel of the pair, the light one.
         levels = self.pixels
         before, after = [levels[k] for k in (9, 8, 7)], [levels[k] for k in (2, 1, 0)]
-        dark_before, dark_after = Signal(), Signal()
-        m.d.comb += [dark_before.eq(before[1] < self.threshold), dark_after.eq(after[1] < self.threshold)]
+        dark_before, dark_after, darker_before = Signal(), Signal(), Signal()
+        m.d.comb += [
+            dark_before.eq(before[1] < self.threshold),
+            dark_after.eq(after[1] < self.threshold),
+            darker_before.eq(before[1] < after[1]),  # as ``dark_before``, if only one of them is dark
+        ]
         rises = [Signal(name=f"rises{k}", reset_less=True) for k in range(LATENCY)]
+        parts = [Signal(name=f"parts{k}", reset_less=True) for k in range(LATENCY)]
         going = [Signal(name=f"going{k}") for k in range(LATENCY)]
         dark, light = stage("dark0 dark1 dark2"), stage("light0 light1 light2")
         darker1, lighter1 = stage("darker1 lighter1")
         m.d.sync += [
-            *(now.eq(older) for now, older in zip(rises, [dark_before, *rises], strict=False)),
-            *(d.eq(Mux(dark_before, b, a)) for d, b, a in zip(dark, before, after, strict=True)),
-            *(d.eq(Mux(dark_before, a, b)) for d, b, a in zip(light, before, after, strict=True)),
-            darker1.eq(Mux(dark_before, levels[5], levels[4])),
-            lighter1.eq(Mux(dark_before, levels[4], levels[5])),
-            going[0].eq(self.valid & (dark_before ^ dark_after)),
+            *(now.eq(older) for now, older in zip(rises, [darker_before, *rises], strict=False)),
+            *(now.eq(older) for now, older in zip(parts, [dark_before ^ dark_after, *parts], strict=False)),
+            *(d.eq(Mux(darker_before, b, a)) for d, b, a in zip(dark, before, after, strict=True)),
+            *(d.eq(Mux(darker_before, a, b)) for d, b, a in zip(light, before, after, strict=True)),
+            darker1.eq(Mux(darker_before, levels[5], levels[4])),
+            lighter1.eq(Mux(darker_before, levels[4], levels[5])),
+            going[0].eq(self.valid),
         ]
         # 2
         low2, dark2, high2, light2 = stage("low2 dark2_ high2 light2_")
@@ -105,12 +117,16 @@ class Locator(wiring.Component):
         )
         read = table.read_port()
         middle2 = Signal(9, reset_less=True)
+        middles = [middle2, *(Signal(9, name=f"middle{k}", reset_less=True) for k in (3, 4))]
+        excesses = [Signal(8, name=f"excess{k}", reset_less=True) for k in range(3)]
         clipped = [Signal(name=f"clipped{k}", reset_less=True) for k in range(3)]
         darker4, step4 = stage("darker4 step4")
         difference = Signal(signed(10))
         m.d.comb += [read.addr.eq(step3[:8]), difference.eq(high - low - self.contrast)]
         m.d.sync += [
             middle2.eq(low + high),
+            *(now.eq(before) for now, before in zip(middles[1:], middles, strict=False)),
+            *(now.eq(before) for now, before in zip(excesses, [difference[:8], *excesses], strict=False)),
             going[3].eq(going[2] & ~step3[-1] & ~difference[-1]),
             clipped[0].eq((low <= 1) | (high >= 252)),
             clipped[1].eq(clipped[0]),
@@ -140,7 +156,10 @@ class Locator(wiring.Component):
         m.d.comb += [
             part.eq(product[15 - PART_BITS : 15] | product[15].replicate(PART_BITS)),
             self.part.eq(part ^ (~rises[5]).replicate(PART_BITS)),
-            self.found.eq(going[5]),
+            self.found.eq(going[5] & parts[5]),
+            self.edge.eq(going[5]),
+            self.middle.eq(middles[2]),
+            self.excess.eq(excesses[2]),
             self.leaving.eq(rises[5] ^ self.bright),
             self.clipped.eq(clipped[2]),
         ]

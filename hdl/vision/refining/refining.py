@@ -43,7 +43,7 @@ class Refining(wiring.Component):
     Members
     -------
     pixels : In(unstalled(GreyPixel))
-    threshold, contrast, bright : In
+    threshold, automatic, contrast, bright : In, level : Out(8)
         See :class:`~hdl.vision.edges.edges.Edges`.
     i : In(unstalled(marker_layout(width, height)))
     columns, rows : In(16)
@@ -62,8 +62,10 @@ class Refining(wiring.Component):
             {
                 "pixels": In(unstalled(GreyPixel)),
                 "threshold": In(8),
+                "automatic": In(1),
                 "contrast": In(8),
                 "bright": In(1),
+                "level": Out(8),
                 "i": In(unstalled(marker_layout(width, height))),
                 "columns": In(16),
                 "rows": In(16),
@@ -86,7 +88,9 @@ class Refining(wiring.Component):
         connect(m, refiner.o, flipped(self.o))
         is_item, has_room = Signal(), Signal()
         m.d.comb += [
-            *(getattr(edges, name).eq(getattr(self, name)) for name in ("threshold", "contrast", "bright")),
+            *(getattr(edges, name).eq(getattr(self, name)) for name in ("threshold", "automatic", "contrast", "bright")),
+            edges.rows.eq(self.rows),
+            self.level.eq(edges.level),
             ring.row_start.eq(edges.row_start),
             ring.settled.eq(edges.settled),
             ring.row.eq(edges.row),
