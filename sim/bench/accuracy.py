@@ -51,6 +51,24 @@ def vertex_rms_hard_px(bench):
     return bench.hard_score.rms_px
 
 
+@measurement("found_rate_light", "Markers found in any light, automatic threshold", "", target=at_least(0.98))
+def found_rate_light(bench):
+    """Black 20 to 90, white 120 to 240, a gradient of 60 grey levels in any direction; nominal blur and noise."""
+    return bench.light_score.found_rate
+
+
+@measurement("found_rate_light_hard", "The same with more blur and noise", "", target=at_least(0.95))
+def found_rate_light_hard(bench):
+    """Part of the rendered markers that were found."""
+    return bench.hard_light_score.found_rate
+
+
+@measurement("false_markers_light", "False markers in both", "", target=at_most(0))
+def false_markers_light(bench):
+    """Reported markers that are none of the rendered ones."""
+    return bench.light_score.false + bench.hard_light_score.false
+
+
 @measurement("false_markers_photographs", "False markers in 20 photographs", "", target=at_most(0))
 def false_markers_photographs(bench):
     """Markers reported where there are none."""

@@ -2,6 +2,9 @@
 
 import functools
 import itertools
+from dataclasses import replace
+
+import numpy as np
 
 from sim.bench.score import Score, score_frame
 from sim.models.refine import sub_pixel
@@ -10,6 +13,9 @@ from sim.results import Settings
 from sim.scene import random_marker_scene, render
 
 __all__ = ["Bench"]
+
+_LIGHT = 2
+"""The random stream of the light."""
 
 _BATCH = 10
 """Frames of one call of the engine: enough to hide its overhead, few enough for the bar to move."""
@@ -109,6 +115,28 @@ class Bench:
     def hard_score(self):
         """Score over the same poses with more blur, more noise and less contrast."""
         return self._score("hard", blur_px=1.2, noise_sigma=8, black=70, white=170)[0]
+
+    def _light_score(self, name, **scene):
+        """Score over random frames in random light, by the model: each frame is shown twice, and judged by itself."""
+        settings, score = replace(self.settings, auto_threshold=True), Score()
+        for seed in self.progress(range(self.frames), f"{name} markers in any light"):
+            random = np.random.default_rng([_LIGHT, seed])
+            light = {"black": random.uniform(20, 90), "white": random.uniform(120, 240)}
+            light |= {"gradient": 60, "gradient_deg": random.uniform(0, 360)}
+            frame = render(random_marker_scene(seed, side_px=(40, 200), tilt_deg=(0, 60), **light, **scene))
+            result = self.model.run([frame.image] * 2, settings)[1]
+            score += score_frame(sub_pixel(result.markers), [marker["vertices"] for marker in frame.truth])
+        return score
+
+    @functools.cached_property
+    def light_score(self):
+        """Score in random light with an automatic threshold, nominal blur and noise."""
+        return self._light_score("nominal", blur_px=0.7, noise_sigma=3)
+
+    @functools.cached_property
+    def hard_light_score(self):
+        """The same with more blur and noise."""
+        return self._light_score("hard", blur_px=1.2, noise_sigma=8)
 
     @functools.cached_property
     def five_markers(self):

@@ -16,6 +16,7 @@ from tests.hdl.simulators import missing
 
 CONFIG = SensorConfig(width=64, height=48)
 SECOND, BOUNCE = 9000, 6
+AUTOMATIC = 1 << system_maps(CONFIG)["sensor"][1].register("threshold").field("automatic").low
 #: Clocks in which every register was read and shown.
 ROUND = 9000
 REGISTERS_SHOWN = ("frame", "markers", "short_lines", "long_lines", "short_frames", "midline_starts")
@@ -115,7 +116,7 @@ def test_switches(rows):
     """To registers and to the camera, once each has lasted; nothing is written twice."""
     for number, phase in enumerate(PHASES):
         row, switches = at_end(rows, number), phase["switches"]
-        assert row["taken"] == switches and row["threshold"] == switches & 255
+        assert row["taken"] == switches and row["threshold"] == (switches & 255 or AUTOMATIC)
         control = system_maps(CONFIG)["sensor"][1].register("control")
         assert row["control"] == 1 << control.field("enable").low | (switches >> 8 & 1) << control.field("bright").low
         assert row["exposure"] == 8 * (switches >> 9 & 127) + 4

@@ -13,6 +13,7 @@ SQUARE = np.array([[100, 100], [200, 100], [200, 200], [100, 200]], float)
 KEYS = {
     "clocks_per_frame", "vertices_latency_lines", "crowd_latency_lines", "rtl_frames_per_s", "model_frames_per_s",
     "found_rate", "found_rate_hard", "false_markers", "wrong_order", "false_markers_photographs",
+    "found_rate_light", "found_rate_light_hard", "false_markers_light",
     "vertex_rms_px", "vertex_p95_px", "vertex_rms_whole_px", "vertex_rms_hard_px",
     "posit_clocks_classic", "posit_clocks_centred", "posit_clocks_soft_float", "fpu_clocks",
     "system_clocks_five_markers", "firmware_bytes", "pose_latency_clocks",

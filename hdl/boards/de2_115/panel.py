@@ -57,6 +57,7 @@ class Panel(wiring.Component):
             return REGISTERS + offset + registers.register(name).offset
 
         self._enable, self._bright = (registers.register("control").field(name).low for name in ("enable", "bright"))
+        self._automatic = registers.register("threshold").field("automatic").low
         self._master = RegisterMaster(
             writes=[address("threshold"), address("control")],
             reads=[address(name) for name in ("frame", "markers", *_CUTS)],
@@ -92,7 +93,7 @@ class Panel(wiring.Component):
             debounce.i.eq(Cat(self.switches, self.key)),
             Cat(switches, key).eq(debounce.o),
             self.restart.eq(key & ~pressed),
-            master.values[0].eq(switches[:8]),
+            master.values[0].eq(switches[:8] | (switches[:8] == 0) << self._automatic),
             master.values[1].eq(1 << self._enable | switches[8] << self._bright),
             self.camera_values[0].eq(Cat(Const(4, 3), switches[9:16])),  # Never 0.
             self.camera_values[1].eq(Array(_GAINS)[switches[16:18]]),

@@ -12,7 +12,7 @@
 ========== =====================================================================================
 KEY[0]     reset
 KEY[1]     set the camera up anew
-SW[7:0]    grey level of the threshold
+SW[7:0]    grey level of the threshold, all off: automatic
 SW[8]      the foreground is light
 SW[15:9]   exposure, in steps of 8 rows of 57 us
 SW[17:16]  gain: 1, 2, 4, 8

@@ -135,5 +135,7 @@ class Edges(wiring.Component):
                 Cat(o.p.x, o.p.y).eq(place.o),
                 *(o.p[field].eq(getattr(locator, field)) for field in ("part", "leaving", "clipped")),
             ]
-        m.d.comb += [getattr(frame_level, name).eq(getattr(locators["across"], name)) for name in ("edge", "middle", "excess")]
+        m.d.comb += [
+            getattr(frame_level, name).eq(getattr(locators["across"], name)) for name in ("edge", "middle", "excess")
+        ]
         return m

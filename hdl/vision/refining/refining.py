@@ -88,7 +88,10 @@ class Refining(wiring.Component):
         connect(m, refiner.o, flipped(self.o))
         is_item, has_room = Signal(), Signal()
         m.d.comb += [
-            *(getattr(edges, name).eq(getattr(self, name)) for name in ("threshold", "automatic", "contrast", "bright")),
+            *(
+                getattr(edges, name).eq(getattr(self, name))
+                for name in ("threshold", "automatic", "contrast", "bright")
+            ),
             edges.rows.eq(self.rows),
             self.level.eq(edges.level),
             ring.row_start.eq(edges.row_start),
