@@ -168,6 +168,21 @@ class HostLibrary:
         self._call("batch_covariance", len(poses), poses, options, sigma, known, results)
         return known.astype(bool), results
 
+    def unbent(self, seen_px: np.ndarray, distortion: tuple[float, ...], *, are_lines: bool = False) -> np.ndarray:
+        """Vertices (N, 4, 2) px as a pinhole would see them, float32; ``distortion`` is k1, k2, p1, p2."""
+        seen = _rows(seen_px, (4, 2))
+        results = np.empty_like(seen)
+        lens = np.array(distortion, np.float32)
+        self._call("batch_unbend", len(seen), seen, ctypes.byref(self._options), lens, int(are_lines), results)
+        return results
+
+    def sigmas(self, qualities: np.ndarray) -> np.ndarray:
+        """Quality words (N,) uint32 to the standard deviations of a vertex's coordinate, px, float32."""
+        qualities = np.ascontiguousarray(qualities, np.uint32)
+        results = np.empty(len(qualities), np.float32)
+        self._call("batch_sigma", len(qualities), qualities, ctypes.byref(self._options), results)
+        return results
+
     def _call(self, name, count, *arguments):
         pointers = [
             part.ctypes.data_as(ctypes.c_void_p) if isinstance(part, np.ndarray) else part for part in arguments

@@ -23,11 +23,16 @@ OPTIONS = np.dtype(
 SETTINGS = np.dtype(
     [
         ("pose", OPTIONS),
+        ("k1", "<f4"),
+        ("k2", "<f4"),
+        ("p1", "<f4"),
+        ("p2", "<f4"),
         ("uart_divisor", "<u4"),
         ("tick_clocks", "<u4"),
         ("watchdog_clocks", "<u4"),
         ("display_ticks", "<u4"),
         ("status_ticks", "<u4"),
+        ("covariance", "<u4"),
     ]
 )
 
@@ -41,6 +46,8 @@ ESTIMATE = np.dtype([("error", "<i4"), ("has_other", "<i4"), ("iterations", "<i4
 MARKER_REPORT = np.dtype(
     [
         ("vertices_px", "<f4", (4, 2)),
+        ("sigma_px", "<f4"),
+        ("is_refined", "<i4"),
         ("estimate", ESTIMATE),
         ("quaternion", "<f4", 4),
         ("ambiguity", "<f4"),

@@ -16,12 +16,16 @@ INNER = (0.15, 0.45)
 
 @dataclass(frozen=True)
 class Lens:
-    """A pinhole without distortion: focal lengths and principal point, all in pixels."""
+    """Focal lengths and principal point in pixels, and OpenCV's coefficients k1, k2, p1, p2; all 0: a pinhole."""
 
     fx: float = 640.0
     fy: float = 640.0
     cx: float = 319.5
     cy: float = 239.5
+    k1: float = 0.0
+    k2: float = 0.0
+    p1: float = 0.0
+    p2: float = 0.0
 
     def __post_init__(self):
         if not (self.fx > 0 and self.fy > 0):
@@ -35,7 +39,42 @@ class Lens:
     def project(self, points_mm):
         """Pixels (N, 2) of points (N, 3) in the camera frame, in millimetres, z > 0."""
         x, y, z = np.asarray(points_mm, dtype=float).T
-        return np.stack([self.fx * x / z + self.cx, self.fy * y / z + self.cy], axis=1)
+        return np.stack(self._pixels(*self._bent(x / z, y / z)), axis=1)
+
+    @property
+    def is_pinhole(self):
+        """Nothing is bent."""
+        return not any((self.k1, self.k2, self.p1, self.p2))
+
+    @property
+    def pinhole(self):
+        """The same without bending."""
+        return Lens(self.fx, self.fy, self.cx, self.cy)
+
+    def _pixels(self, x, y):
+        return self.fx * x + self.cx, self.fy * y + self.cy
+
+    def _bent(self, x, y):
+        square, product = x * x + y * y, 2 * x * y
+        scale = 1 + self.k1 * square + self.k2 * square**2
+        shift_x = self.p1 * product + self.p2 * (square + 2 * x * x)
+        shift_y = self.p1 * (square + 2 * y * y) + self.p2 * product
+        return x * scale + shift_x, y * scale + shift_y
+
+    def unbent(self, x_px, y_px):
+        """Pixels of the pinhole whose rays this lens shows at these pixels; arrays of any shape. By Newton's method."""
+        seen_x, seen_y = (np.asarray(x_px) - self.cx) / self.fx, (np.asarray(y_px) - self.cy) / self.fy
+        x, y = seen_x.copy(), seen_y.copy()
+        for _ in range(6):
+            bent_x, bent_y = self._bent(x, y)
+            square = x * x + y * y
+            scale, slope = 1 + self.k1 * square + self.k2 * square**2, 2 * self.k1 + 4 * self.k2 * square
+            xx = scale + slope * x * x + 2 * self.p1 * y + 6 * self.p2 * x
+            yy = scale + slope * y * y + 6 * self.p1 * y + 2 * self.p2 * x
+            xy = slope * x * y + 2 * self.p1 * x + 2 * self.p2 * y
+            wrong_x, wrong_y, whole = seen_x - bent_x, seen_y - bent_y, xx * yy - xy * xy
+            x, y = x + (yy * wrong_x - xy * wrong_y) / whole, y + (xx * wrong_y - xy * wrong_x) / whole
+        return self._pixels(x, y)
 
 
 class UnseenMarkerError(ValueError):

@@ -7,6 +7,8 @@ sensor saw), and muted so that colour means a finding. A title runs above it and
 import cv2
 import numpy as np
 
+from firmware.reference import Pose
+
 __all__ = ["draw_overlay"]
 
 GROUND, PLATE, INK, FAINT = (23, 26, 31), (12, 14, 18), (240, 242, 245), (160, 168, 178)
@@ -140,14 +142,17 @@ def _place(size, around, taken, limits):
     return best[1:]
 
 
+#: The camera's own axes.
+IN_PLACE = Pose(np.eye(3), np.zeros(3), 0.0)
+
+
 def _axes(canvas, pose, camera, side_mm):
     """The marker's axes from its centre, half a side long, as its pose puts them."""
     rotation, origin = np.array(pose["R"]), np.array(pose["t_mm"])
     ends = origin + side_mm / 2 * np.vstack([np.zeros(3), rotation.T])
     if ends[:, 2].min() <= 0:
         return
-    focal, centre = np.array([camera.fx, camera.fy]), np.array([camera.cx, camera.cy])
-    seen = canvas.at(ends[:, :2] / ends[:, 2:] * focal + centre)
+    seen = canvas.at(camera.project(ends, IN_PLACE))
     # What is furthest is drawn first.
     for index in np.argsort(-ends[1:, 2]):
         name, colour = AXES[index]

@@ -15,7 +15,7 @@ import numpy as np
 from sim.marker import Lens, MarkerPose, marker_pose
 from sim.pattern import RASTERPOSE, Pattern
 from sim.photos import photographs
-from sim.scene_coverage import coverage
+from sim.scene_coverage import bent_coverage, coverage
 from sim.scene_motion import move
 from sim.scene_place import place_markers
 
@@ -127,23 +127,28 @@ def _truth(marker, lens):
     }
 
 
-def _cover(scene, image, outline):
-    """Window of the float32 image that a polygon touches, and the part of its pixels it covers."""
-    window, part = coverage(outline, scene.width, scene.height)
+def _cover(scene, image, marker, *limits):
+    """Window of the float32 image that a rectangle touches, and the part of its pixels it covers."""
+    size = scene.width, scene.height
+    if scene.lens.is_pinhole:
+        window, part = coverage(marker.rectangle(scene.lens, *limits), *size)
+    else:
+        window, part = bent_coverage(marker.rectangle(scene.lens.pinhole, *limits), scene.lens.unbent, *size)
     return window, part if image.ndim == 2 else part[:, :, None]
 
 
 def _draw(scene, image, marker):
     """Lay one marker over a float32 image, in place."""
     if scene.background is not None:
-        window, part = _cover(scene, image, marker.outline(scene.lens, -scene.quiet_zone, 1 + scene.quiet_zone))
+        zone = -scene.quiet_zone, 1 + scene.quiet_zone
+        window, part = _cover(scene, image, marker, zone[0], zone[0], zone[1], zone[1])
         image[window] += part * (scene.white - image[window])
     # White lies within black, so their steps add up to the area's mean even where a pixel sees several edges.
     step = scene.black - scene.white
-    window, part = _cover(scene, image, marker.outline(scene.lens))
+    window, part = _cover(scene, image, marker, 0, 0, 1, 1)
     image[window] += part * step
     for rectangle in scene.pattern.rectangles:
-        window, part = _cover(scene, image, marker.rectangle(scene.lens, *rectangle))
+        window, part = _cover(scene, image, marker, *rectangle)
         image[window] -= part * step
 
 

@@ -76,3 +76,29 @@ def coverage(polygon, width, height):
     cells_y = y[near_vertex][:, None, None] + _OFFSETS[:, None]
     part[near_vertex] = (edge_distances(polygon, cells_x, cells_y) > 0).all(axis=0).mean(axis=(1, 2))
     return (slice(low[1], high[1]), slice(low[0], high[0])), part
+
+
+def bent_coverage(polygon, unbent, width, height):
+    """As :func:`coverage`, of what a lens makes of a polygon.
+
+    Parameters
+    ----------
+    polygon : (N, 2)
+        As a pinhole sees it.
+    unbent : callable
+        ``unbent(x, y)`` are the pinhole's pixels of the lens's pixels; neighbours must stay within 2 pixels.
+
+    Returns
+    -------
+    window, part
+        The window is the whole frame. Every pixel near an edge is divided into cells, since no edge is straight.
+    """
+    y, x = np.mgrid[:height, :width]
+    distance = edge_distances(polygon, *unbent(x, y)).min(axis=0)
+    part = (distance > 0).astype(np.float32)
+    near = np.abs(distance) < 2 * _HALF_DIAGONAL_PX
+    cells_x, cells_y = np.broadcast_arrays(
+        x[near][:, None, None] + _OFFSETS, y[near][:, None, None] + _OFFSETS[:, None]
+    )
+    part[near] = (edge_distances(polygon, *unbent(cells_x, cells_y)) > 0).all(axis=0).mean(axis=(1, 2))
+    return (slice(0, height), slice(0, width)), part

@@ -48,3 +48,33 @@ def pose_covariance(pose: Pose, camera: Camera, side_mm: float, sigma_px: float 
                 value = solution[(row + 3) % 6] * variance * scales[row] * scales[column]
                 covariance[row, column] = covariance[column, row] = value
     return covariance if np.isfinite(covariance).all() else None
+
+
+#: Of a whole-pixel vertex, px, measured: 1.24 px rms over both coordinates.
+WHOLE_SIGMA_PX = 0.88
+
+#: A vertex lies where two fitted lines end, and neighbouring points share their noise: its variance is this many times
+#: that of a line's points over their number; for an unpolished pose more, which scatters more than its vertices ask
+#: for. Measured, tests/models/test_covariance.py.
+POLISHED_FACTOR, UNPOLISHED_FACTOR = 9.75, 16.5
+
+#: Square pixels.
+RESIDUAL_STEP = 1 / 4096
+
+
+def vertex_sigma(residual: int, points: int, *, is_refined: bool, is_polished: bool, dtype: type = np.float64):
+    """Standard deviation of a vertex's coordinate, px: what `pose_covariance` wants.
+
+    Parameters
+    ----------
+    residual : mean square distance of a marker's edge points from its lines, in 1/4096 square pixel, cut off
+    points : the fewest that a line has
+    is_refined : the vertices lie where lines meet; otherwise they are whole pixels
+    is_polished : the pose is polished
+    dtype : numpy.float64, or numpy.float32 for the result of the C port bit for bit
+    """
+    if not is_refined:
+        return dtype(WHOLE_SIGMA_PX)
+    factor = POLISHED_FACTOR if is_polished else UNPOLISHED_FACTOR
+    variance = (dtype(residual) + dtype(0.5)) * dtype(RESIDUAL_STEP) * dtype(factor) / dtype(points)
+    return np.sqrt(variance)

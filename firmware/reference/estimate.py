@@ -7,6 +7,7 @@ import numpy as np
 from .camera import Camera
 from .centred import centred_branches
 from .classic import classic_poses
+from .lens import unbend
 from .numbers import DTYPES, Lens, Number
 from .polish import polish
 from .pose import Pose, PoseError, PoseEstimate
@@ -39,7 +40,7 @@ def estimate_pose(
     Parameters
     ----------
     vertices : (4, 2) px, V1..V4, clockwise in the image
-    camera : the camera the vertices are seen by
+    camera : the camera the vertices are seen by; what its lens bends is undone first, and rms_px is that of a pinhole
     side_mm : the marker's side in mm, finite and > 0; the classic form in float32, which computes in mm, is meant
         for 1e-3 to 1e6 mm and focal lengths of 1 to 1e6 px
     method : "centred", the default: the rays are turned onto the optical axis, three steps, then polish;
@@ -75,7 +76,8 @@ def estimate_pose(
 
     with np.errstate(all="ignore"):  # out of range becomes infinite, and so an error value
         lens = Lens.of(camera, dtype)
-        pixels = tuple(map(tuple, np.asarray(vertices, dtype=dtype)))
+        seen = unbend(vertices, camera, dtype) if any(camera.distortion) else np.asarray(vertices, dtype=dtype)
+        pixels = tuple(map(tuple, seen))
         error, quad = check_quad(pixels, lens)
         if quad is None:
             return PoseEstimate(None, None, error, 0)

@@ -9,7 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["Sentence", "decimal", "frame_sentence", "moment", "parse", "pose_sentence", "status_sentence"]
+__all__ = [
+    "Sentence",
+    "covariance_sentence",
+    "decimal",
+    "frame_sentence",
+    "moment",
+    "parse",
+    "parse_covariance",
+    "pose_sentence",
+    "status_sentence",
+]
 
 _MOST = np.float32(2147483520)  # the largest float32 below 2^31
 
@@ -82,6 +92,22 @@ def pose_sentence(frame, time, marker, error, t_mm=None, quaternion=None, rms_px
         *(decimal(value, 1e6, 6) for value in quaternion),
         decimal(rms_px, 1e3, 3), decimal(ambiguity, 1e3, 3),
     )  # fmt: skip
+
+
+def covariance_sentence(frame, time, marker, covariance):
+    """$RPCOV of a (6, 6) float32 covariance, None where it is not known."""
+    words = np.zeros((6, 6), np.float32) if covariance is None else np.asarray(covariance, np.float32)
+    bits = words[np.triu_indices(6)].view(np.uint32)
+    return _line("RPCOV", frame, time, marker, *(f"{word:08X}" for word in bits.tolist()))
+
+
+def parse_covariance(sentence):
+    """(frame, marker, (6, 6) float32 covariance or None where it is not known) of a $RPCOV."""
+    frame, _, marker, *words = sentence.fields
+    covariance = np.zeros((6, 6), np.float32)
+    covariance[np.triu_indices(6)] = np.array([int(word, 16) for word in words], np.uint32).view(np.float32)
+    covariance = np.where(covariance == 0, covariance.T, covariance)
+    return int(frame), int(marker), covariance if covariance.any() else None
 
 
 def status_sentence(time, *, frames, skipped, cut, lost, traps, restarts):

@@ -1,6 +1,6 @@
 // From published frames to sentences: the sensor's program.
 //
-//   frame interrupt -> frame_take -> pose_centred for each marker -> $RPPOS
+//   frame interrupt -> frame_take -> pose_centred for each marker -> $RPPOS, $RPCOV
 //   timer interrupt -> housekeeping: $RPSTA, LCD
 //
 // Everything but two flags happens in the main loop. A frame is read at once and let go, so the sensor can publish the
@@ -51,14 +51,33 @@ static void start(void) {
 // After every step that has a bound. A slow serial line has one for a sentence, but too long a one for a frame.
 static void kick(void) { SYSTEM->watchdog.KICK = KICK; }
 
+static int lens_bends(void) {
+    const struct pose_lens *const lens = &settings.lens;
+    return lens->k1 != 0.0f || lens->k2 != 0.0f || lens->p1 != 0.0f || lens->p2 != 0.0f;
+}
+
 static void find_pose(struct marker_report *marker) {
+    float unbent[8];
+    const float *vertices = marker->vertices_px;
     SYSTEM->performance.START = 1u << SECTION_POSE;
     const uint32_t before = platform_clocks();
-    pose_centred(marker->vertices_px, &settings.pose, &marker->estimate);
+    if (lens_bends()) {
+        pose_unbend(marker->vertices_px, &settings.pose.camera, &settings.lens, marker->is_refined, unbent);
+        vertices = unbent;
+    }
+    pose_centred(vertices, &settings.pose, &marker->estimate);
     marker->clocks = platform_clocks() - before;
     SYSTEM->performance.STOP = 1u << SECTION_POSE;
     pose_quaternion(marker->estimate.pose.r, marker->quaternion);
     marker->ambiguity = pose_ambiguity(&marker->estimate);
+}
+
+static void tell_covariance(char *line, struct moment time, uint32_t number) {
+    const struct marker_report *const marker = &report.marker[number];
+    float covariance[36];
+    if (marker->estimate.error != POSE_OK) return;
+    pose_covariance(&marker->estimate.pose, &settings.pose, marker->sigma_px, covariance);
+    serial_send(line, sentence_covariance(line, report.frame, time, number, covariance));
 }
 
 // All poses, then all sentences: each of the two fills the instruction cache.
@@ -76,6 +95,7 @@ static void process_frame(void) {
         for (uint32_t number = 0; number < report.markers; number++) {
             kick();
             serial_send(line, sentence_pose(line, report.frame, time, number, &report.marker[number]));
+            if (settings.covariance) tell_covariance(line, time, number);
         }
         SYSTEM->performance.STOP = 1u << SECTION_TEXT;
         report.sequence++;

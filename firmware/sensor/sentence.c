@@ -56,6 +56,24 @@ int sentence_pose(char *line, uint32_t frame, struct moment time, uint32_t index
     return finish(line, at);
 }
 
+int sentence_covariance(char *line, uint32_t frame, struct moment time, uint32_t index, const float covariance[36]) {
+    char *at = text_string(line, "$RPCOV");
+    at = number(at, frame);
+    at = when(at, time);
+    at = number(at, index);
+    for (int row = 0; row < 6; row++) {
+        for (int column = row; column < 6; column++) {
+            const union {
+                float value;
+                uint32_t bits;
+            } word = {.value = covariance[6 * row + column]};
+            *at++ = ',';
+            at = text_hex(at, word.bits, 8);
+        }
+    }
+    return finish(line, at);
+}
+
 int sentence_status(char *line, struct moment time, const struct status *status) {
     char *at = text_string(line, "$RPSTA");
     at = when(at, time);

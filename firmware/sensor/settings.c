@@ -16,4 +16,5 @@ __attribute__((section(".settings"), used)) const struct settings settings = {
     .watchdog_clocks = 100000000,  // 2 s
     .display_ticks = 20,
     .status_ticks = 100,
+    .covariance = 0,
 };

@@ -57,10 +57,11 @@ def run_frame(engine, pose, image, settings, camera, side_mm):
     shown = 2 if settings.auto_threshold else 1
     sensor = sensor_for(engine, pose, image.shape[1], image.shape[0])
     if pose is PoseSource.FIRMWARE:
-        own = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
+        own = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2")}
         with engine_errors(engine):
-            result, report = sensor.run(image, settings, shown, side_mm=side_mm, **own)
-        return result, firmware_poses(report.markers), sensor.traffic().lines
+            result, report = sensor.run(image, settings, shown, side_mm=side_mm, covariance=1, **own)
+        lines = sensor.traffic().lines
+        return result, firmware_poses(report.markers, lines), lines
     with engine_errors(engine):
         result = sensor.run([image] * shown, settings)[-1]
     return result, reference_poses(result.markers, camera, side_mm), None

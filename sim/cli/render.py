@@ -1,5 +1,6 @@
 """``render``: frames with markers, and the truth about them."""
 
+from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -28,6 +29,10 @@ def render(
     black: Annotated[float, typer.Option(help="Grey level of the marker.")] = 40.0,
     white: Annotated[float, typer.Option(help="Grey level of the ground.")] = 200.0,
     gradient: Annotated[float, typer.Option(min=-255, max=255, help="Lighting across the frame, grey levels.")] = 0.0,
+    lens: Annotated[
+        tuple[float, float, float, float],
+        typer.Option(metavar="K1 K2 P1 P2", help="What the lens bends: OpenCV's coefficients."),
+    ] = (0.0, 0.0, 0.0, 0.0),
     background: Annotated[str | None, typer.Option(metavar="FILE", help="Photograph behind them.")] = None,
 ):
     """Render frames of random markers as PNG, and write where they truly are to truth.json."""
@@ -37,6 +42,7 @@ def render(
     if build_for(width, height) is None:
         raise UserError(f"no sensor takes frames of {width} x {height} px")
     photograph = None if background is None else read_picture(background)
+    bends = dict(zip(("k1", "k2", "p1", "p2"), lens, strict=True))
     with reported(ValueError):
         ground = {
             "width": width,
@@ -46,6 +52,7 @@ def render(
             "blur_px": blur,
             "noise_sigma": noise,
             "gradient": gradient,
+            "lens": replace(scenes.Lens.of_frame(width, height), **bends),
             "background": None if photograph is None else fill_frame(photograph, width, height),
         }
         folder = checked_folder(out)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from firmware.reference import PoseError
+from firmware.reference import PoseError, ambiguity
 from sim.models.refine import RESIDUAL_SCALE, Quality, sub_pixel
 
 __all__ = ["blobs_report", "corners_report", "frame_report"]
@@ -52,6 +52,8 @@ def _marker_report(marker, pose):
         "quality": _quality_report(marker),
         "pose": _pose_report(estimate.pose),
         "other_pose": _pose_report(estimate.other),
+        "ambiguity": float(ambiguity(estimate)),
+        "covariance": None if pose.covariance is None else pose.covariance.tolist(),
         "pose_source": str(pose.source),
         "pose_clocks": pose.clocks,
     }

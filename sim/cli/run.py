@@ -7,6 +7,7 @@ import typer
 
 from sim.cli import options
 from sim.cli.angles import caption
+from sim.cli.calibration import read_camera
 from sim.cli.console import printer, progress
 from sim.cli.engines import run_frame, sensor_for
 from sim.cli.files import STDOUT, checked_folder, checked_json, save_picture, unique_names, write_json
@@ -49,6 +50,10 @@ def run(
     min_side: Annotated[int, typer.Option(help="Least width and height of a marker, px.")] = (
         options.DEFAULTS.marker_min_side
     ),
+    calibration: Annotated[
+        str | None,
+        typer.Option("--camera", metavar="FILE", help="Camera and lens, as OpenCV's calibration writes them."),
+    ] = None,
     focal: Annotated[float, typer.Option(metavar="PX", help="Focal length, px.")] = 640.0,
     center: Annotated[
         tuple[float, float] | None,
@@ -77,7 +82,12 @@ def run(
     side_mm = options.checked_side(side)
     pose = options.pose_source(pose, engine)
     images = [read_picture(frame) for frame in frames]
-    cameras = [options.camera_for(image.shape[1], image.shape[0], focal, center) for image in images]
+    cameras = [
+        options.camera_for(image.shape[1], image.shape[0], focal, center)
+        if calibration is None
+        else read_camera(calibration, image.shape[1], image.shape[0])
+        for image in images
+    ]
     if pose is options.PoseSource.FIRMWARE:
         for camera in cameras:
             options.checked_for_firmware(camera, side_mm)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from firmware.host import HostLibrary
-from firmware.reference import Camera, Pose, estimate_pose, pose_covariance
+from firmware.reference import Camera, Pose, estimate_pose, pose_covariance, vertex_sigma
 from tests.firmware.views import CAMERA, SIDE, SQUARE, random_pose, rotation
 
 CASES = [(30, (400, 300), 600.0), (45, (100, 400), 1000.0), (20, (320, 240), 300.0), (60, (600, 100), 800.0)]
@@ -81,3 +81,19 @@ def proper(rotation_float32):
 @pytest.mark.parametrize("t_mm", [(0, 0, 0), (0, 0, -100), (0, 0, 1e200)])
 def test_no_covariance_where_there_is_none(t_mm):
     assert pose_covariance(Pose(np.eye(3), t_mm, 0.1), CAMERA, SIDE) is None
+
+
+def test_vertex_sigma_of_quality_words():
+    """The C port's bit for bit, with and without polish, of every kind of word."""
+    rng = np.random.default_rng(34)
+    words = rng.integers(0, 2**32, 3000, dtype=np.uint32)
+    words[:200] &= 0xFF000FFF  # no points
+    for steps in (0, 2):
+        got = HostLibrary(polish_steps=steps).sigmas(words)
+        for word, sigma in zip(words.tolist(), got, strict=True):
+            with np.errstate(divide="ignore"):
+                expected = vertex_sigma(
+                    word & 0xFFF, word >> 12 & 0xFFF, is_refined=bool(word >> 24 & 1), is_polished=steps > 0,
+                    dtype=np.float32,
+                )  # fmt: skip
+            assert sigma == expected and sigma > 0

@@ -7,7 +7,15 @@ import pytest
 
 from firmware.host import FLAGS
 from firmware.layout import FRAME_REPORT, MARKER_REPORT
-from firmware.reference.sentence import decimal, frame_sentence, parse, pose_sentence, status_sentence
+from firmware.reference.sentence import (
+    covariance_sentence,
+    decimal,
+    frame_sentence,
+    parse,
+    parse_covariance,
+    pose_sentence,
+    status_sentence,
+)
 from firmware.toolchain.compile import FIRMWARE, run_zig
 
 SOURCES = [FIRMWARE / "sensor" / f"{name}.c" for name in ("text", "sentence", "display")]
@@ -29,9 +37,9 @@ def text(tmp_path_factory):
 
 def written(function, *arguments):
     """The line that a function writes, without its end; its length and its end are checked."""
-    line = ctypes.create_string_buffer(b"\xa5" * 200, 200)
+    line = ctypes.create_string_buffer(b"\xa5" * 300, 300)
     length = function(line, *arguments)
-    assert length < 160 and len(line.value) == length and line.value.endswith(b"\r\n")
+    assert length < 256 and len(line.value) == length and line.value.endswith(b"\r\n")
     return line.value[:-2].decode("ascii")
 
 
@@ -66,6 +74,26 @@ def test_poses(text):
         assert got == pose_sentence(frame, f"{second}.{micro:06d}", number, 0, *numbers)
         name, fields = parse(got)
         assert (name, len(fields), fields[:4]) == ("RPPOS", 13, (str(frame), f"{second}.{micro:06d}", str(number), "0"))
+
+
+def test_covariances(text):
+    """Any bits, told and read back."""
+    rng = np.random.default_rng(5)
+    for _ in range(200):
+        words = rng.integers(0, 2**32, 21, dtype=np.uint32)
+        covariance = np.zeros((6, 6), np.float32)
+        covariance[np.triu_indices(6)] = words.view(np.float32)
+        covariance.T[np.triu_indices(6)] = words.view(np.float32)
+        frame, number = 2**32 - 1, 63
+        got = written(
+            text.sentence_covariance, ctypes.c_uint32(frame), Moment(85, 999_999), ctypes.c_uint32(number),
+            ctypes.c_void_p(covariance.ctypes.data),
+        )  # fmt: skip
+        assert got == covariance_sentence(frame, "85.999999", number, covariance)
+        told = parse_covariance(parse(got))
+        assert told[:2] == (frame, number)
+        np.testing.assert_array_equal(told[2], covariance)
+    assert parse_covariance(parse(covariance_sentence(1, "0.000001", 2, None))) == (1, 2, None)
 
 
 @pytest.mark.parametrize("error", [1, 2, 3, 4])

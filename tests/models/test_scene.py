@@ -72,6 +72,24 @@ def one_marker(name, **scene_kwargs):
     return Scene(markers=[marker_pose(*POSES[name], Lens())], **scene_kwargs)
 
 
+LENS = {"k1": -0.25, "k2": 0.06, "p1": 0.002, "p2": -0.001}
+
+
+def test_bent_marker_is_what_opencv_makes_of_a_straight_one():
+    """OpenCV undistorts the rendered picture; then it equals the pinhole's, but for interpolation at the edges."""
+    lens = Lens(**LENS)
+    poses = [marker_pose((200, 150), 120, 30, 40, 20, lens), marker_pose((480, 330), 150, 50, 100, 70, lens)]
+    light = {"markers": poses, "blur_px": 2.0, "noise_sigma": 0}
+    bent, straight = render(Scene(**light, lens=lens)).image, render(Scene(**light)).image
+    matrix = np.array([[640, 0, 319.5], [0, 640, 239.5], [0, 0, 1]])
+    judged = cv2.undistort(bent, matrix, np.array(list(LENS.values())))[20:-20, 20:-20].astype(int)
+    difference = np.abs(judged - straight[20:-20, 20:-20])
+    assert difference.max() < 14 and difference.mean() < 0.15
+    assert np.abs(bent.astype(int) - straight).max() > 100
+    seen = [marker.vertices(lens) for marker in poses]
+    assert np.array_equal([marker["vertices"] for marker in render(Scene(**light, lens=lens)).truth], seen)
+
+
 @pytest.mark.parametrize("name", POSES)
 def test_picture_is_the_warped_bitmap(name):
     scene = one_marker(name, **CLEAN)
@@ -305,7 +323,8 @@ def test_truth_is_json():
     frame = render(scene)
     (entry,) = json.loads(json.dumps(truth_json([("a.png", scene, frame)])))["frames"]
     assert (entry["file"], entry["width"], entry["height"], entry["seed"]) == ("a.png", 640, 480, 11)
-    assert entry["camera"] == {"fx": 640, "fy": 640, "cx": 319.5, "cy": 239.5}
+    pinhole = {"fx": 640, "fy": 640, "cx": 319.5, "cy": 239.5}
+    assert entry["camera"] == pinhole | dict.fromkeys(("k1", "k2", "p1", "p2"), 0)
     for marker, truth in zip(scene.markers, entry["markers"], strict=True):
         pose = MarkerPose(truth["R"], truth["t_mm"], truth["side_mm"])
         assert np.array_equal(pose.vertices(Lens(**entry["camera"])), truth["vertices"])

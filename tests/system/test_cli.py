@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from firmware.reference import Camera, estimate_pose
+from sim.marker import Lens, marker_pose
 from sim.models.refine import Quality, sub_pixel
 from sim.models.sensor import ModelSensor
 from sim.pictures import build_for, read_picture
+from sim.scene import Scene, random_marker_scene, render
 
 RUN_KEYS = {
     "file", "width", "height", "engine", "clocks",
@@ -42,7 +44,7 @@ def test_run_json_has_the_agreed_form(sim, pictures):
     for marker in frame["markers"]:
         assert set(marker) == {
             *("box", "vertices", "vertices_px", "quality"),
-            *("pose", "other_pose", "pose_source", "pose_clocks"),
+            *("pose", "other_pose", "ambiguity", "covariance", "pose_source", "pose_clocks"),
         }
         assert set(marker["quality"]) == {"rms_px", "points", *(flag.name.lower() for flag in Quality)}
         assert marker["quality"]["refined"] and marker["quality"]["points"] > 9
@@ -51,6 +53,10 @@ def test_run_json_has_the_agreed_form(sim, pictures):
         assert np.shape(marker["vertices"]) == (4, 2)
         assert set(marker["pose"]) == POSE_KEYS
         assert np.shape(marker["pose"]["R"]) == (3, 3) and np.shape(marker["pose"]["t_mm"]) == (3,)
+        covariance = np.array(marker["covariance"])
+        assert covariance.shape == (6, 6) and (covariance == covariance.T).all()
+        assert np.linalg.eigvalsh(covariance).min() > 0 and 0 < np.sqrt(covariance[2, 2]) < 2  # mm
+        assert 0 <= marker["ambiguity"] < 1 and (marker["ambiguity"] == 0) == (marker["other_pose"] is None)
         assert marker["other_pose"] is None or set(marker["other_pose"]) == POSE_KEYS
 
 
@@ -88,6 +94,43 @@ def test_default_camera_looks_through_the_middle(sim, pictures, tmp_path):
     (marker,) = frame["markers"]
     pose = estimate_pose(marker["vertices"], Camera(640, 640, 199.5, 239.5)).pose
     assert marker["pose"]["t_mm"] == pose.t_mm.tolist()
+
+
+CALIBRATED = Camera(610.0, 612.0, 322.5, 236.0, -0.22, 0.05, 0.0012, -0.0018)
+
+
+def calibration(path, camera=CALIBRATED, size=(640, 480), **more):
+    """A file as OpenCV's calibration writes it."""
+    matrix = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
+    values = {"image_width": size[0], "image_height": size[1], "camera_matrix": matrix,
+              "distortion_coefficients": np.array([[*camera.distortion, 0.0]]), **more}  # fmt: skip
+    storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
+    for name, value in values.items():
+        if value is not None:
+            storage.write(name, value)
+    storage.release()
+    return path
+
+
+def test_calibrated_camera(sim, tmp_path):
+    """A bent picture: without the lens's coefficients the pose is wrong, with them it is as good as ever."""
+    lens = Lens(**vars(CALIBRATED))
+    marker = marker_pose((520, 370), 130, 35, 60, 25, lens)
+    cv2.imwrite(str(tmp_path / "bent.png"), render(Scene(markers=[marker], lens=lens)).image)
+    pinhole = calibration(tmp_path / "pinhole.yml", CALIBRATED.pinhole, distortion_coefficients=None)
+    errors = []
+    for file in (calibration(tmp_path / "camera.yml"), calibration(tmp_path / "camera.json"), pinhole):
+        (found,) = run_json(sim, tmp_path / "bent.png", "--camera", file)["frames"][0]["markers"]
+        turn = cv2.Rodrigues(np.array(found["pose"]["R"]) @ marker.R.T)[0]
+        errors.append((np.degrees(np.linalg.norm(turn)), np.linalg.norm(found["pose"]["t_mm"] - marker.t_mm)))
+    assert errors[0] == errors[1] and np.all(np.array(errors[0]) < (0.1, 0.5)) and errors[2][0] > 1, errors
+
+
+def test_automatic_threshold_finds_dim_markers(sim, tmp_path):
+    scene = random_marker_scene(5, count=3, side_px=(60, 100), black=20, white=75, gradient=20)
+    cv2.imwrite(str(tmp_path / "dim.png"), render(scene).image)
+    assert len(run_json(sim, tmp_path / "dim.png")["frames"][0]["markers"]) == 0
+    assert len(run_json(sim, tmp_path / "dim.png", "--auto-threshold")["frames"][0]["markers"]) == 3
 
 
 def test_settings_reach_the_sensor(sim, pictures):

@@ -56,6 +56,37 @@ def test_picture_that_cannot_be_taken(sim, broken, command, name, reason):
 
 
 @pytest.mark.parametrize(
+    "content, reason",
+    [
+        (None, "no such file"),
+        ("", "not a file of OpenCV"),
+        ("camera: [unclosed\n  :::", "not a file of OpenCV"),
+        ("%YAML:1.0\n---\nimage_width: 640\n", "no camera_matrix of 3 x 3"),
+        ({"camera_matrix": np.eye(2)}, "no camera_matrix of 3 x 3"),
+        (
+            {"camera_matrix": np.eye(3), "image_width": 320},
+            "calibrated for 320 x 480 px, and the picture has 640",
+        ),
+        ({"camera_matrix": np.array([[1.0, 2, 0], [0, 1, 0], [0, 0, 1]])}, "skewed"),
+        ({"camera_matrix": np.eye(3), "dist_coeffs": np.array([0, 0, 0, 0, 1.0])}, "beyond k1, k2, p1, p2"),
+        ({"camera_matrix": np.diag([0.0, 1, 1])}, "positive"),
+        ({"camera_matrix": np.diag([np.nan, 1, 1])}, "finite"),
+    ],
+)
+def test_calibration_that_cannot_be_taken(sim, pictures, tmp_path, content, reason):
+    path = tmp_path / "camera.yml"
+    if isinstance(content, str):
+        path.write_text(content)
+    elif content is not None:
+        storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
+        for name, value in content.items():
+            storage.write(name, value)
+        storage.release()
+    line = complaint(sim("run", pictures / "three.png", "--engine", "model", "--camera", path))
+    assert reason in line
+
+
+@pytest.mark.parametrize(
     "options, reason",
     [
         (["--threshold", "256"], "threshold must be 0 to 255, not 256"),

@@ -1,16 +1,22 @@
 """The firmware in the whole system: every sentence, and what becomes of frames, programs and lines that go wrong."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from firmware.layout import SETTINGS
-from firmware.reference import Camera
-from firmware.reference.sentence import parse
+from firmware.reference import Camera, estimate_pose, pose_covariance, unbend, vertex_sigma
+from firmware.reference.sentence import covariance_sentence, moment, parse
 from firmware.toolchain.images import build
 from hdl.system.addresses import RAM
 from hdl.vision.framer import SETTLING
 from sim.engine.system import RtlSystem
+from sim.marker import Lens
+from sim.models.refine import Quality, sub_pixel
+from sim.models.sensor import ModelSensor
 from sim.results import Settings
+from sim.scene import random_marker_scene, render
 from tests.shapes import marker_frame, marker_grid
 from tests.system.firmware_bench import (
     begin,
@@ -197,6 +203,27 @@ def test_settings_of_the_host(rtl, image):
     rtl.forget()
     (first,) = feed_frames(rtl, [ONE], told=1)
     assert rtl.traffic().lines == frame_lines(1, first, found(ONE), 1, camera=camera, side_mm=side_mm)
+
+
+def test_lens_and_covariance(rtl, image):
+    """A bent picture, told as the reference tells it: vertices unbent, each pose with the covariance of its fit."""
+    bends = {"k1": -0.2, "k2": 0.05, "p1": 0.001, "p2": -0.002}
+    scene = random_marker_scene(3, COLUMNS, ROWS, side_px=(40, 60), tilt_deg=(10, 40))
+    lens = Lens(scene.lens.fx, scene.lens.fy, scene.lens.cx, scene.lens.cy, **bends)
+    frame = render(dataclasses.replace(scene, lens=lens)).image
+    camera = Camera(lens.fx, lens.fy, lens.cx, lens.cy, **bends)
+    settings = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy", *bends)}
+    begin(rtl, image, COLUMNS, ROWS, covariance=1, **settings)
+    (first,) = feed_frames(rtl, [frame], told=1)
+    (marker,) = ModelSensor(640, 480).run([frame])[0].markers
+    assert marker["flags"] & Quality.REFINED
+    vertices = unbend(sub_pixel(marker), camera, np.float32, are_lines=True)
+    lines = frame_lines(0, first, [vertices], 0, camera=camera.pinhole)
+    pose = estimate_pose(vertices, camera.pinhole, dtype=np.float32, polish_steps=0).pose
+    sigma = vertex_sigma(marker["residual"], marker["points"], is_refined=True, is_polished=False, dtype=np.float32)
+    covariance = pose_covariance(pose, camera.pinhole, 113.0, sigma)
+    lines.append(covariance_sentence(0, moment(first), 0, covariance))
+    assert rtl.traffic().lines == lines and np.linalg.eigvalsh(covariance.astype(float)).min() > 0
 
 
 def test_bright_markers(rtl, image):

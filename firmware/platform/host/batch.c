@@ -1,7 +1,9 @@
 // Many markers in one call, so that tests of the host library need no call for each.
 #include <stddef.h>
 
+#include "lens.h"
 #include "pose.h"
+#include "vertex.h"
 
 typedef void estimator(const float vertices_px[8], const struct pose_options *options, struct pose_estimate *estimate);
 
@@ -35,4 +37,14 @@ void batch_covariance(size_t count, const struct pose *poses, const struct pose_
 
 void batch_ambiguity(size_t count, const struct pose_estimate *estimates, float *ambiguities) {
     for (size_t n = 0; n < count; n++) ambiguities[n] = pose_ambiguity(estimates + n);
+}
+
+void batch_unbend(size_t count, const float *seen_px, const struct pose_options *options, const struct pose_lens *lens,
+                  int are_lines, float *vertices_px) {
+    for (size_t n = 0; n < count; n++)
+        pose_unbend(seen_px + 8 * n, &options->camera, lens, are_lines, vertices_px + 8 * n);
+}
+
+void batch_sigma(size_t count, const uint32_t *qualities, const struct pose_options *options, float *sigmas_px) {
+    for (size_t n = 0; n < count; n++) sigmas_px[n] = vertex_sigma(qualities[n], options);
 }
