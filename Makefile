@@ -41,6 +41,7 @@ report: .venv/installed ## Compare with rivals and redo the paper's experiments:
 	$(PY) -m sim report $(if $(QUICK),--quick) $(ARGS)
 
 exhaustive: .venv/installed ## Run the tests that try every case, which takes long
+	$(PY) -m pytest -n $(JOBS) -m long $(ARGS)
 	$(PY) -m pytest -n $(JOBS) tests/exhaustive $(ARGS)
 
 docs: .venv/installed ## Write the register map for people and for C: build/out/registers

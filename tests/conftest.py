@@ -12,12 +12,21 @@ def pytest_configure(config):
     config.addinivalue_line("filterwarnings", "ignore::amaranth.hdl.UnusedElaboratable")
 
 
+def _usable(simulator):
+    from tests.hdl import harness  # Not needed where no simulator is.
+
+    if reason := harness.missing(simulator):
+        pytest.skip(reason)
+    return simulator
+
+
 @pytest.fixture(params=["verilator", "icarus"])
 def simulator(request):
     """Each simulator for :func:`tests.hdl.harness.cocotb_run`; skipped, saying why, where it is missing."""
-    from tests.hdl import harness  # Not needed where no simulator is.
+    return _usable(request.param)
 
-    reason = harness.missing(request.param)
-    if reason:
-        pytest.skip(reason)
-    return request.param
+
+@pytest.fixture(params=["verilator", pytest.param("icarus", marks=pytest.mark.long)])
+def large_simulator(request):
+    """The same for what takes Icarus a minute or more, and so runs on it with ``make exhaustive`` alone."""
+    return _usable(request.param)

@@ -71,7 +71,7 @@ def clock_names(netlist):
     (top,) = (module for module in netlist["modules"].values() if module["attributes"].get("top"))
     cells = {name: cell["connections"] for name, cell in top["cells"].items() if cell["type"] == "EHXPLLL"}
     outputs = {
-        cells[f"clocks.{instance}"][f"CLK{output}"][0]: name
+        cells[f"clocks.pll_{instance}"][f"CLK{output}"][0]: name
         for instance, pll in PLLS.items()
         for output, name in pll.outputs.items()
     }

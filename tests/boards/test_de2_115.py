@@ -133,6 +133,7 @@ def test_from_camera_to_serial_line():
     assert after[3] == table and again[3] == 2 * table
 
 
+@pytest.mark.long
 @pytest.mark.skipif(bool(harness.missing("icarus")), reason=str(harness.missing("icarus")))
 def test_short_on_icarus():
     """One picture, small and after the set-up: Icarus makes some five hundred clocks a second."""

@@ -64,19 +64,19 @@ def shown(cable):
     return VgaMonitor(MODE).pictures(hsync, vsync, rgb, active)
 
 
-def test_from_camera_to_monitor(simulator):
+def test_from_camera_to_monitor(large_simulator):
     """With Verilator two pictures, the first before the camera is set up; with Icarus one, and nothing of the cable."""
     sent = [
         np.repeat(marker_frame(ROWS, COLUMNS, [place])[..., None], 3, axis=2)
         for place in ((20, 9, 30, 20), (12, 7, 33, 100))
     ]
     pictures = [as_received(picture) for picture in sent]
-    is_long = simulator == "verilator"
+    is_long = large_simulator == "verilator"
     program = [(Op.PLAY, 0)] * is_long + [(Op.CAMERA, PATIENCE), (Op.LOOK,), (Op.LINES, 1, PATIENCE), (Op.PLAY, 0)]
     program += [(Op.LINES, 3, PATIENCE), (Op.LOOK,)]
     if is_long:
         program += [(Op.RECORD, RECORDED), (Op.PLAY, 1), (Op.LINES, 5, PATIENCE), (Op.RECORD, RECORDED)]
-    captured = play(simulator, program, sent)
+    captured = play(large_simulator, program, sent)
     camera = Ov7670Camera()
     camera.bus.writes.extend(map(tuple, captured["writes"].tolist()))
     assert camera.is_set_up
@@ -110,8 +110,8 @@ NETLIST = {
         "rasterpose_ulx3s": {
             "attributes": {"top": 1},
             "cells": {
-                "clocks.video": {"type": "EHXPLLL", "connections": {"CLKOP": [8], "CLKOS": [29]}},
-                "clocks.system": {"type": "EHXPLLL", "connections": {"CLKOP": [34]}},
+                "clocks.pll_video": {"type": "EHXPLLL", "connections": {"CLKOP": [8], "CLKOS": [29]}},
+                "clocks.pll_system": {"type": "EHXPLLL", "connections": {"CLKOP": [34]}},
                 "other": {"type": "TRELLIS_FF", "connections": {"CLK": [34]}},
             },
             "netnames": {

@@ -57,7 +57,7 @@ def edge_cases():
     }  # fmt: skip
 
 
-def test_pictures(simulator):
+def test_pictures(large_simulator):
     """Pictures one after the other, each published while the one before it is in its blank rows."""
     random = np.random.default_rng(3)
     few = [lists(random, *counts) for counts in ((3, 9, 1), (12, 30, 3), (2, 0, 0), (0, 64, 0), (0, 0, 8))]
@@ -66,7 +66,7 @@ def test_pictures(simulator):
     for number in range(1, len(contents) + 1):
         program += [(Op.LOAD, number), (Op.BUSY, 0 if number < 3 else 60), (Op.SHOW, PICTURE)]
     program += [(Op.LATE, 0)]
-    shown, log = play(simulator, program, contents)
+    shown, log = play(large_simulator, program, contents)
     assert len(shown) == len(contents) - 1 and log == [0]
     for number, (got, content) in enumerate(zip(shown, contents, strict=False)):
         assert (got == expected(content)).all(), (
@@ -100,14 +100,14 @@ def test_exchange_in_the_middle(simulator):
     assert changes >= 3 and mixed <= 2 * changes
 
 
-def test_nothing_that_was_not_published(simulator):
+def test_nothing_that_was_not_published(large_simulator):
     """Lists change all the time, to fewer and to more items, and the bus is busy: still only what was published."""
     random = np.random.default_rng(7)
     frames = [lists(random, 2, 5, 1), EMPTY, lists(random, 5, 15, 2)]
     merged = {name: np.concatenate([one[name] for one in frames]) for name in EMPTY}
     program = [(Op.BUSY, 100), (Op.SHOW, ROW)]
     program += [step for _ in range(110) for number in (1, 2, 3) for step in ((Op.LOAD, number), (Op.SHOW, ROW // 2))]
-    shown, _ = play(simulator, [*program, (Op.SHOW, 2 * PICTURE)], frames)
+    shown, _ = play(large_simulator, [*program, (Op.SHOW, 2 * PICTURE)], frames)
     all_codes = codes(CONFIG.width, CONFIG.height, **merged)
     ground = picture(np.zeros_like(all_codes), MODE.columns, MODE.rows)
     somewhere = np.zeros(ground.shape[:2], bool)
@@ -118,22 +118,22 @@ def test_nothing_that_was_not_published(simulator):
     assert (shown[-1] == expected(frames[-1])).all()
 
 
-def test_reset_in_the_middle(simulator):
+def test_reset_in_the_middle(large_simulator):
     """Of the painter: what was painted, and what was published, is gone; the monitor notices nothing else."""
     content = lists(np.random.default_rng(9), 8, 30, 2)
     program = [(Op.LOAD, 1), (Op.SHOW, PICTURE + 20 * ROW + 33), (Op.RESET, 3), (Op.SHOW, 2 * PICTURE), (Op.LOAD, 1)]
-    shown, _ = play(simulator, [*program, (Op.SHOW, 2 * PICTURE)], [content])
+    shown, _ = play(large_simulator, [*program, (Op.SHOW, 2 * PICTURE)], [content])
     first, *_, last = shown
     before, after = expected(content), expected(EMPTY)
     assert (first[:20] == before[:20]).all() and (first[24:] == after[24:]).all()
     assert any((got == after).all() for got in shown) and (last == before).all()
 
 
-def test_too_much_for_a_row(simulator):
+def test_too_much_for_a_row(large_simulator):
     """The bus takes most clocks: rows are late and counted, markers come first, and the screen stays in step."""
     content = lists(np.random.default_rng(11), 32, 64, 3)
     program = [(Op.LOAD, 1), (Op.BUSY, 245), (Op.SHOW, 2 * PICTURE), (Op.LATE, 0), (Op.BUSY, 0)]
-    shown, (late, later) = play(simulator, [*program, (Op.SHOW, 2 * PICTURE), (Op.LATE, 0)], [content])
+    shown, (late, later) = play(large_simulator, [*program, (Op.SHOW, 2 * PICTURE), (Op.LATE, 0)], [content])
     assert 10 < late <= 2 * CONFIG.height and later - late < 3
     partial, whole = shown[0], shown[-1]
     full = expected(content)

@@ -34,7 +34,7 @@ def test_sweep_writes_a_table_and_a_plot(sim, kept, tmp_path):
         ("rasterpose", "10.0"), ("rasterpose", "160.0"), ("apriltag", "10.0"), ("apriltag", "160.0")
     ]  # fmt: skip
     assert set(found[0]) == {"system", "contrast", "frames", *FIGURES}
-    assert found[1]["found_rate"] == "1.0" and float(found[3]["vertex_rms_px"]) < float(found[1]["vertex_rms_px"])
+    assert found[1]["found_rate"] == "1.0" and float(found[1]["vertex_rms_px"]) < float(found[3]["vertex_rms_px"])
     assert plot.read_text().startswith("<?xml")
     done = sorted(path.stat().st_mtime_ns for path in kept.rglob("*.json"))
     assert len(done) == 3

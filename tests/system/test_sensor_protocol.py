@@ -184,7 +184,7 @@ def test_size_changes_too_soon():
     rtl.configure(SETTINGS, 120, 90)
     rtl.feed(camera_pixels(frames[0]))
     rtl.write("frame_size", columns=80, rows=100)
-    _, results = rtl.feed(camera_pixels(frames[1]), publications=2, patience=5000)
+    _, results = rtl.feed(camera_pixels(frames[1]), publications=2, patience=20_000)
     assert [number for number, _ in results] == [0] and rtl.read("bad_sizes")["count"] == 1
     _, more = rtl.feed(camera_pixels(frames[1]), publications=1)
     assert [number for number, _ in more] == [1] and rtl.read("bad_sizes")["count"] == 1

@@ -45,7 +45,7 @@ def items(result):
     ]
 
 
-def test_view(simulator):
+def test_view(large_simulator):
     """Three frames; software reads each over the bus, and a viewer what it can in every clock."""
     random = np.random.default_rng(8)
     frames = [marker_grid(random, 48, 64, (28, 32)), marker_frame(48, 64, [(5, 9, 20, 90), (37, 20, 22, 0)])]
@@ -53,7 +53,7 @@ def test_view(simulator):
     config = SensorConfig(width=SIZE[0], height=SIZE[1])
     pixels = np.concatenate([camera_pixels(frame).astype(np.int64) for frame in frames])
     verilog = emit.to_verilog(Sensor(config=config, has_view=True), emit.TOP)
-    words, seen = play(simulator, SIZE, [(pixels, pauses(frames))], REFINING, verilog, view_seed=1)
+    words, seen = play(large_simulator, SIZE, [(pixels, pauses(frames))], REFINING, verilog, view_seed=1)
 
     models = ModelSensor(*SIZE).run(frames)
     time = pixel_clocks(pixels, pauses(frames)) - 1

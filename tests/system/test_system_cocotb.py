@@ -94,13 +94,13 @@ def lines_of(number, first, frame):
     return frame_lines(number, first, found(frame), 0, camera=CAMERA, clock_hz=CLOCK_HZ)
 
 
-def test_from_pixels_to_pins(simulator):
+def test_from_pixels_to_pins(large_simulator):
     """A frame with idle clocks, after a reset while the program starts.
 
     With Verilator also a frame before it, a reset while the program tells of a frame, and the display. Icarus, which
     makes a thousand clocks a second, would take minutes for that: the display alone needs 50,000 clocks.
     """
-    is_long = simulator == "verilator"
+    is_long = large_simulator == "verilator"
     program = [*set_up(), (Op.IDLE, 3000)]
     if is_long:
         program += [*set_up(), (Op.LINES, 1, 100_000), (Op.FEED, 0), (Op.LINES, 2, 60_000), (Op.IDLE, 700)]
@@ -112,7 +112,7 @@ def test_from_pixels_to_pins(simulator):
         program += [(Op.SHOWN, DISPLAY + 34, 60_000), (Op.SHOWN, DISPLAY + 68, 60_000)]
     program += [(Op.READ, register("uart", "lost")), (Op.READ, register("lcd", "errors"))]
     frames = [(ONE, 0), (TWO, random_idle(TWO.size, 0.3, seed=1, longest=3))]
-    captured = play(simulator, program, frames)
+    captured = play(large_simulator, program, frames)
     *before, (text, first) = sessions(captured)
     expected = lines_of(0, first[0], ONE) if is_long else []
     expected += lines_of(int(is_long), first[-1], TWO)

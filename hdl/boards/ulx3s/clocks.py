@@ -75,7 +75,7 @@ class Clocks(wiring.Component):
         locked = Signal(len(PLLS))
         m.d.comb += self.locked.eq(locked.all())
         for number, (name, pll) in enumerate(PLLS.items()):
-            m.submodules[name] = self._instance(pll, locked[number])
+            m.submodules[f"pll_{name}"] = self._instance(pll, locked[number])
         return m
 
     def _instance(self, pll, locked):
