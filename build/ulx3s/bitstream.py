@@ -24,16 +24,16 @@ NAME = "rasterpose_ulx3s"
 DEVICE = "LFE5U-85F-6BG381C"
 SEEDS = (1, 2, 3)
 
-#: What the program is told because the system's clock is not 50 MHz: 3 Mbaud, a tick of 10 ms, a watchdog of 2 s.
+#: What the program is told because the system's clock is not 50 MHz: 2 Mbaud, a tick of 10 ms, a watchdog of 2 s.
 SETTINGS = {
-    "uart_divisor": SYSTEM_HZ // 3_000_000,
+    "uart_divisor": SYSTEM_HZ // 2_000_000,
     "tick_clocks": SYSTEM_HZ // 100,
     "watchdog_clocks": 2 * SYSTEM_HZ,
 }
 
 #: What nextpnr is asked for where the system's clock needs 1: it no longer improves what it thinks is fast enough, and
 #: what it thinks before routing is a few per cent too fast.
-_AIM = 1.2
+_AIM = 1.4
 
 
 class TimingError(Exception):

@@ -38,7 +38,8 @@ class Recipe:
     runtime : tuple of str
         Sources of Verilator's runtime.
     level : str
-        How much what runs in every clock is optimised.
+        How much what runs in every clock is optimised. More than -O1 makes the sensor no faster: it then needs more
+        of the instruction cache.
     """
 
     prefix: str
@@ -46,7 +47,7 @@ class Recipe:
     compiler: tuple = ()
     linker: tuple = ()
     runtime: tuple = ("verilated", "verilated_threads")
-    level: str = "-O2"
+    level: str = "-O1"
 
     def command(self):
         """g++ with everything but what to do."""

@@ -76,8 +76,8 @@ async def play(dut):
     for name in ("fire", "data", "href", "vsync", "scl_pulled", "sda_pulled"):
         getattr(dut, name).value = 0
     dut.reset_n.value = 1
-    # 20 times the board's 25 MHz, of which the period is one of its 45 MHz, see ehxplll.v.
-    Clock(dut.oscillator, bench.period_ps * 45 // 500, unit="ps").start(start_high=False)
+    # 20 times the board's 25 MHz, of which the period is one of its 40 MHz, see ehxplll.v.
+    Clock(dut.oscillator, bench.period_ps * 40 // 500, unit="ps").start(start_high=False)
     Clock(dut.pclk, int(plan["pixel_ps"]), unit="ps").start(start_high=False)
     await bench.clocks(100)
     for task in (bench.bus(), bench.listen(), bench.count_lines()):

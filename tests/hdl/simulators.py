@@ -20,14 +20,12 @@ __all__ = ["build", "missing", "told", "verilator_environment"]
 
 _LIBRARIES = cocotb_tools.config.libs_dir
 
-#: The main program is cocotb's, and finds the module under this class's name. Most time is spent in Python, so what is
-#: compiled is not optimised for long.
+#: The main program is cocotb's, and finds the module under this class's name.
 _PROGRAM = Recipe(
     prefix="Vtop",
     verilator=("--vpi", "--timescale", "1ns/1ps"),
     linker=(f"-L{_LIBRARIES}", f"-Wl,-rpath,{_LIBRARIES}", "-lcocotbvpi_verilator"),
     runtime=("verilated", "verilated_dpi", "verilated_threads", "verilated_vpi"),
-    level="-O1",
 )
 _MAIN = str(cocotb_tools.config.share_dir / "lib" / "verilator" / "verilator.cpp")
 

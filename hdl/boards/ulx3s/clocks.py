@@ -1,7 +1,7 @@
 """Clocks of the ULX3S: two of Lattice's EHXPLLL make them of the 25 MHz oscillator.
 
-One makes the monitor's clock and the cable's, five times as fast, the other the system's: no frequency within a PLL's
-range is a multiple of all three. Each PLL's feedback is its first clock, so its others keep their phase to that one.
+One makes the monitor's clock and the cable's, five times as fast, the other the system's, which nextpnr routes at 42 to
+50 MHz, as chance has it: no frequency within a PLL's range is a multiple of all three. Each PLL's feedback is its first clock, so its others keep their phase to that one.
 
 Model: ``sim/boards/ehxplll.v``.
 """
@@ -43,7 +43,7 @@ class Pll:
 
 PLLS = {
     "video": Pll(1, 500_000_000, {"shift": 125_000_000, "pixel": 25_000_000}),
-    "system": Pll(5, 630_000_000, {"system": 45_000_000}),
+    "system": Pll(5, 640_000_000, {"system": 40_000_000}),
 }
 
 #: Name -> Hz.
@@ -59,7 +59,7 @@ class Clocks(wiring.Component):
     -------
     oscillator : :py:`In(1)`
     shift, pixel, system : :py:`Out(1)`
-        125, 25 and 45 MHz; the system's is unrelated to the others.
+        125, 25 and 40 MHz; the system's is unrelated to the others.
     locked : :py:`Out(1)`
         They are stable. Belongs to no clock.
     """

@@ -2,7 +2,7 @@
 
 ::
 
-    clk_25mhz -> PLLs -> system 45 MHz, pixel 25 MHz (and cam_xclk), shift 125 MHz; cam_pclk is a clock of its own
+    clk_25mhz -> PLLs -> system 40 MHz, pixel 25 MHz (and cam_xclk), shift 125 MHz; cam_pclk is a clock of its own
 
     OV7670 ---> camera ---> system ---> UART (FTDI)
                               '-------> display ---> DVI ---> GPDI
