@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from firmware.reference import Camera, estimate_pose
-from firmware.reference.sentence import parse
+from firmware.reference.sentence import parse, parse_covariance
 from sim.cli.app import main
 
 
@@ -22,10 +22,12 @@ def built(pictures, tmp_path_factory):
 
 
 @pytest.mark.usefixtures("built")
-@pytest.mark.parametrize("name", ["three", "paper", "noise", "least"])
-def test_run(sim, pictures, name):
+@pytest.mark.parametrize("name, options", [
+    ("three", []), ("three", ["--auto-threshold", "--threshold", "0"]), ("paper", []), ("noise", []), ("least", []),
+])  # fmt: skip
+def test_run(sim, pictures, name, options):
     def frame(engine):
-        args = ("run", pictures / f"{name}.png", "--no-overlay", "--json", "-", "--engine", engine)
+        args = ("run", pictures / f"{name}.png", "--no-overlay", "--json", "-", "--engine", engine, *options)
         (only,) = sim(*args, "--pose", "reference").json()["frames"]
         return only
 
@@ -41,13 +43,14 @@ def test_run(sim, pictures, name):
         ("three", [], Camera(), 113),
         ("paper", ["--focal", "800", "--center", "300", "-20.5", "--side", "50"], Camera(800, 800, 300, -20.5), 50),
         ("least", [], Camera(640, 640, 7.5, 7.5), 113),
+        ("three", ["--auto-threshold", "--threshold", "255"], Camera(), 113),
     ],
 )
 def test_run_with_the_firmware(sim, pictures, name, options, camera, side_mm):
     args = ("run", pictures / f"{name}.png", "--no-overlay", "--json", "-", *options)
     (rtl,) = sim(*args).json()["frames"]
     (model,) = sim(*args, "--engine", "model").json()["frames"]
-    poses = {"pose", "other_pose", "pose_source", "pose_clocks"}
+    poses = {"pose", "other_pose", "ambiguity", "covariance", "pose_source", "pose_clocks"}
     for markers in (rtl["markers"], model["markers"]):
         assert len(markers) == {"three": 3, "paper": 1, "least": 0}[name]
     for mine, other in zip(rtl["markers"], model["markers"], strict=True):
@@ -60,8 +63,10 @@ def test_run_with_the_firmware(sim, pictures, name, options, camera, side_mm):
                 assert pose["rms_px"] == float(reference.rms_px)
         assert mine["pose_source"] == "firmware" and 1000 < mine["pose_clocks"] < 8000
     sentences = [parse(line) for line in rtl.pop("sentences")]
-    assert [sentence.name for sentence in sentences] == ["RPFRM", *["RPPOS"] * len(rtl["markers"])]
-    for (_, fields), marker in zip(sentences[1:], rtl["markers"], strict=True):
+    assert [sentence.name for sentence in sentences] == ["RPFRM", *["RPPOS", "RPCOV"] * len(rtl["markers"])]
+    for (_, fields), told, marker in zip(sentences[1::2], sentences[2::2], rtl["markers"], strict=True):
+        assert parse_covariance(told)[2].tolist() == marker["covariance"]
+        assert np.linalg.eigvalsh(marker["covariance"]).min() > 0 and 0 <= marker["ambiguity"] < 1
         assert np.allclose(np.float64(fields[4:7]), marker["pose"]["t_mm"], atol=0.001)
     del rtl["markers"], model["markers"]
     assert rtl == {**model, "engine": "rtl", "clocks": rtl["width"] * rtl["height"]}
