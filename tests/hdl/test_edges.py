@@ -124,6 +124,15 @@ def test_automatic_threshold(idle, contrast):
     assert len(set(check_automatic(run, frames, contrast=contrast))) > 3
 
 
+def test_automatic_threshold_of_ramps():
+    """Steep ramps up and down have an edge at nearly every pixel: the greatest sums that there are."""
+    wave = np.abs((np.arange(SIZE[0]) * 28 + 100) % 506 - 253)
+    frames = [np.tile(wave * scale // 10, (SIZE[1], 1)).astype(np.uint8) for scale in (10, 9, 8)]
+    engine().reset()
+    run = engine().run({"i": (grey_beats(frames), None)}, settings(120, contrast=0, automatic=1))
+    assert len(set(check_automatic(run, frames, contrast=0))) > 2
+
+
 def test_automatic_threshold_starts_anew():
     """Switched off and on it starts from the given level; a frame that is cut early leaves it as it is."""
     random = np.random.default_rng(7)
@@ -165,7 +174,7 @@ def test_emitted_verilog(simulator):
     at = frames[0].size + 700
     idle = random_idle(len(beats), 0.3, seed=5)
     idle[frames[0].size :] = 0
-    given, config = {"i": (beats, idle)}, settings(120)
+    given, config = {"i": (beats, idle)}, settings(120, automatic=1)
     options = {"drain_clocks": DRAIN, "reset_at": [at]}
     run = cocotb_run(edges, simulator, given, config, width=SIZE[0], height=SIZE[1], **options)
     assert_same(run, StreamEngine(edges, *SIZE).run(given, config, **options))

@@ -53,7 +53,7 @@ class FrameLevel(wiring.Component):
 
     def __init__(self, *, width, height):
         self._row = bits_for(height - 1)
-        self._weights = bits_for(width * height * 255 // 2)
+        self._weights = bits_for(width * height * 255)
         super().__init__(
             {
                 "edge": In(1),
@@ -70,7 +70,6 @@ class FrameLevel(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        # An edge takes two pixels, so the weights of a frame are half of its pixels' at most.
         weights, middles = Signal(self._weights), Signal(self._weights + 9)
         product, weight, adds = Signal(17, reset_less=True), Signal(8, reset_less=True), Signal()
         counts, closing = Signal(), Signal(range(DRAIN + 1))
