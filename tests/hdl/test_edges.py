@@ -126,8 +126,8 @@ def test_automatic_threshold(idle, contrast):
 
 def test_automatic_threshold_of_ramps():
     """Steep ramps up and down have an edge at nearly every pixel: the greatest sums that there are."""
-    wave = np.abs((np.arange(SIZE[0]) * 28 + 100) % 506 - 253)
-    frames = [np.tile(wave * scale // 10, (SIZE[1], 1)).astype(np.uint8) for scale in (10, 9, 8)]
+    wave = np.abs(np.add.outer(np.arange(SIZE[1]) * 25, np.arange(SIZE[0]) * 28 + 100) % 506 - 253)
+    frames = [(wave * scale // 10).astype(np.uint8) for scale in (10, 9, 8)]
     engine().reset()
     run = engine().run({"i": (grey_beats(frames), None)}, settings(120, contrast=0, automatic=1))
     assert len(set(check_automatic(run, frames, contrast=0))) > 2
