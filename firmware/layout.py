@@ -46,8 +46,7 @@ ESTIMATE = np.dtype([("error", "<i4"), ("has_other", "<i4"), ("iterations", "<i4
 MARKER_REPORT = np.dtype(
     [
         ("vertices_px", "<f4", (4, 2)),
-        ("sigma_px", "<f4"),
-        ("is_refined", "<i4"),
+        ("quality", "<u4"),
         ("estimate", ESTIMATE),
         ("quaternion", "<f4", 4),
         ("ambiguity", "<f4"),

@@ -1,8 +1,6 @@
 #include "frame.h"
 
 #include "registers.h"
-#include "settings.h"
-#include "vertex.h"
 
 enum { PATIENCE = 100000 };  // polls, of more than 5 clocks each; 32 markers are refined in 200,000 clocks
 
@@ -42,9 +40,7 @@ int frame_take(struct frame_report *report) {
             read_vertex(vertices + 2, marker->v2, marker->offset2);
             read_vertex(vertices + 4, marker->v3, marker->offset3);
             read_vertex(vertices + 6, marker->v4, marker->offset4);
-            const uint32_t quality = marker->quality;
-            report->marker[number].sigma_px = vertex_sigma(quality, &settings.pose);
-            report->marker[number].is_refined = (quality & QUALITY_REFINED) != 0;
+            report->marker[number].quality = marker->quality;
         }
         next_number = frame + 1u;
         started = 1;

@@ -15,6 +15,7 @@
 #include "sentence.h"
 #include "serial.h"
 #include "settings.h"
+#include "vertex.h"
 
 enum { SECTION_POSE = 1, SECTION_TEXT = 2, SECTION_FRAME = 3 };  // of the performance counter
 enum { KICK = 0x5AFE };                                          // what the watchdog wants to hear
@@ -62,7 +63,8 @@ static void find_pose(struct marker_report *marker) {
     SYSTEM->performance.START = 1u << SECTION_POSE;
     const uint32_t before = platform_clocks();
     if (lens_bends()) {
-        pose_unbend(marker->vertices_px, &settings.pose.camera, &settings.lens, marker->is_refined, unbent);
+        pose_unbend(marker->vertices_px, &settings.pose.camera, &settings.lens,
+                    (marker->quality & QUALITY_REFINED) != 0, unbent);
         vertices = unbent;
     }
     pose_centred(vertices, &settings.pose, &marker->estimate);
@@ -76,7 +78,8 @@ static void tell_covariance(char *line, struct moment time, uint32_t number) {
     const struct marker_report *const marker = &report.marker[number];
     float covariance[36];
     if (marker->estimate.error != POSE_OK) return;
-    pose_covariance(&marker->estimate.pose, &settings.pose, marker->sigma_px, covariance);
+    const float sigma_px = vertex_sigma(marker->quality, &settings.pose);
+    pose_covariance(&marker->estimate.pose, &settings.pose, sigma_px, covariance);
     serial_send(line, sentence_covariance(line, report.frame, time, number, covariance));
 }
 

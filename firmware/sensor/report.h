@@ -11,8 +11,7 @@ enum { REPORT_MARKERS = 64 };
 
 struct marker_report {
     float vertices_px[8];  // x, y of V1 to V4, as the camera sees them
-    float sigma_px;        // standard deviation of their coordinates, as far as it is known
-    int32_t is_refined;    // 1: they lie where lines meet that were fitted to the sides; 0: they are whole pixels
+    uint32_t quality;      // the hardware's word: whether they are refined, and how well they fit
     struct pose_estimate estimate;
     float quaternion[4];  // w x y z
     float ambiguity;      // 0 to 1

@@ -40,12 +40,13 @@ endmodule
 
 // FACTOR / DIVISOR clocks a clock, which is half a clock at most.
 module fraction #(parameter FACTOR = 1, parameter DIVISOR = 2) (input in, output reg out);
-    reg [15:0] sum = 0;
+    reg  [31:0] sum = 0;
+    wire [31:0] next = sum + 2 * FACTOR;
     initial out = 0;
     always @(posedge in) begin
-        sum <= sum + 2 * FACTOR;
-        if (sum + 2 * FACTOR >= DIVISOR) begin
-            sum <= sum + 2 * FACTOR - DIVISOR;
+        sum <= next;
+        if (next >= DIVISOR) begin
+            sum <= next - DIVISOR;
             out <= !out;
         end
     end

@@ -223,6 +223,7 @@ def test_lens_and_covariance(rtl, image):
     sigma = vertex_sigma(marker["residual"], marker["points"], is_refined=True, is_polished=False, dtype=np.float32)
     covariance = pose_covariance(pose, camera.pinhole, 113.0, sigma)
     lines.append(covariance_sentence(0, moment(first), 0, covariance))
+    rtl.report()  # waits until everything is told
     assert rtl.traffic().lines == lines and np.linalg.eigvalsh(covariance.astype(float)).min() > 0
 
 

@@ -80,7 +80,8 @@ class Clocks(wiring.Component):
         return m
 
     def _instance(self, pll, locked):
-        parameters = {}
+        # An output that is not enabled is connected all the same, or lint would miss it.
+        parameters = {"p_CLKOS_ENABLE": "DISABLED", "o_CLKOS": Signal(name="unused")}
         for output, name in pll.outputs.items():
             parameters |= {
                 f"p_CLK{output}_ENABLE": "ENABLED",
