@@ -59,7 +59,8 @@ def print_frame(console, report, table):
     if table.row_count:
         console.print(table)
     for sentence in report.get("sentences", ()):
-        console.print(sentence, style="cyan", markup=False, highlight=False, soft_wrap=True)
+        if not sentence.startswith("$RPCOV"):  # the bits of numbers say nothing to people
+            console.print(sentence, style="cyan", markup=False, highlight=False, soft_wrap=True)
     console.print(f"[dim]{summary(report)}[/]\n", soft_wrap=True)
 
 
