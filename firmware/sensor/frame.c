@@ -2,7 +2,7 @@
 
 #include "registers.h"
 
-enum { PATIENCE = 100000 };  // polls, of more than 5 clocks each; 32 markers are refined in 200,000 clocks
+enum { PATIENCE = 100000 };  // polls, of more than 5 clocks each; 32 markers are refined in 300,000 clocks
 
 static uint32_t next_number;
 static int started;

@@ -14,7 +14,7 @@
 
 namespace {
 
-constexpr int64_t HELD_PATIENCE = 1'000'000;  // clocks; a full queue of markers takes 200,000
+constexpr int64_t HELD_PATIENCE = 1'000'000;  // clocks; a full queue of markers takes 300,000
 
 struct Sensor {
     VerilatedContext context;

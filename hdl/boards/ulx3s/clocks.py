@@ -1,7 +1,7 @@
 """Clocks of the ULX3S: two of Lattice's EHXPLLL make them of the 25 MHz oscillator.
 
 One makes the monitor's clock and the cable's, five times as fast, the other the system's, which nextpnr routes at 42 to
-50 MHz, as chance has it: no frequency within a PLL's range is a multiple of all three. Each PLL's feedback is its first
+53 MHz, as chance has it: no frequency within a PLL's range is a multiple of all three. Each PLL's feedback is its first
 clock, so its others keep their phase to that one.
 
 Model: ``sim/boards/ehxplll.v``.
@@ -39,7 +39,7 @@ class Pll:
     @property
     def outputs(self):
         """What Lattice calls an output -> name of the clock."""
-        return dict(zip(("OP", "OS", "OS2", "OS3"), self.clocks, strict=False))
+        return dict(zip(("OP", "OS"), self.clocks, strict=False))
 
 
 PLLS = {

@@ -28,7 +28,7 @@ class Refining(wiring.Component):
     :class:`~hdl.vision.refining.refiner.Refiner`. Latency: 7 rows and some 2,500 clocks after a marker's last row,
     because the crossings below it must have come; END, SKIP and ABORT wait for the markers before them.
 
-    Memory at 640 x 480: 221 kbit of crossings, 56 kbit of rows, 10 kbit of markers, 10 kbit of tables and program.
+    Memory at 640 x 480: 221 kbit of crossings, 56 kbit of rows, 20 kbit of markers, 10 kbit of tables and program.
 
     Parameters
     ----------
