@@ -11,6 +11,7 @@ from sim.cli.errors import UserError, reported
 
 __all__ = ["read_camera"]
 
+_SIZE = ("image_width", "image_height")
 #: Names that OpenCV's samples and tutorials give the coefficients.
 _DISTORTION = ("distortion_coefficients", "dist_coeff", "dist_coeffs")
 
@@ -21,10 +22,11 @@ def _nodes(path):
         raise UserError(f"{path}: no such file, or it cannot be read")
     try:
         storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_READ)
-        root = storage.root()
-        names = root.keys() if root.isMap() else []
-        return {name: node.mat() if node.isMap() else node.real() for name in names
-                if (node := storage.getNode(name)).isMap() or node.isReal() or node.isInt()}  # fmt: skip
+        numbers = {name: storage.getNode(name) for name in _SIZE}
+        matrices = {name: storage.getNode(name) for name in ("camera_matrix", *_DISTORTION)}
+        return {name: node.real() for name, node in numbers.items() if node.isReal() or node.isInt()} | {
+            name: node.mat() for name, node in matrices.items() if node.isMap()
+        }
     except (cv2.error, SystemError):
         raise UserError(f"{path}: not a file of OpenCV's FileStorage (YAML, XML or JSON)") from None
 
@@ -42,9 +44,9 @@ def read_camera(path, width, height):
     matrix = nodes.get("camera_matrix")
     if not isinstance(matrix, np.ndarray) or matrix.shape != (3, 3):
         raise UserError(f"{path}: no camera_matrix of 3 x 3")
-    sizes = tuple(int(nodes.get(name, size)) for name, size in (("image_width", width), ("image_height", height)))
-    if sizes != (width, height):
-        raise UserError(f"{path}: calibrated for {sizes[0]} x {sizes[1]} px, and the picture has {width} x {height}")
+    for name, size in zip(_SIZE, (width, height), strict=True):
+        if nodes.get(name, size) != size:
+            raise UserError(f"{path}: {name} is {nodes[name]:g}, and the picture has {size}")
     if matrix[0, 1] or matrix[1, 0]:
         raise UserError(f"{path}: camera_matrix is skewed, which no pose here allows for")
     bends = next((nodes[name] for name in _DISTORTION if isinstance(nodes.get(name), np.ndarray)), np.zeros(4))

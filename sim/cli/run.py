@@ -52,7 +52,7 @@ def run(
     ),
     calibration: Annotated[
         str | None,
-        typer.Option("--camera", metavar="FILE", help="Camera and lens, as OpenCV's calibration writes them."),
+        typer.Option("--camera", metavar="FILE", help="OpenCV's calibration, instead of focal and center."),
     ] = None,
     focal: Annotated[float, typer.Option(metavar="PX", help="Focal length, px.")] = 640.0,
     center: Annotated[

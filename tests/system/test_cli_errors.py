@@ -65,7 +65,7 @@ def test_picture_that_cannot_be_taken(sim, broken, command, name, reason):
         ({"camera_matrix": np.eye(2)}, "no camera_matrix of 3 x 3"),
         (
             {"camera_matrix": np.eye(3), "image_width": 320},
-            "calibrated for 320 x 480 px, and the picture has 640",
+            "image_width is 320, and the picture has 640",
         ),
         ({"camera_matrix": np.array([[1.0, 2, 0], [0, 1, 0], [0, 0, 1]])}, "skewed"),
         ({"camera_matrix": np.eye(3), "dist_coeffs": np.array([0, 0, 0, 0, 1.0])}, "beyond k1, k2, p1, p2"),
