@@ -147,7 +147,7 @@ class Sensor(wiring.Component):
     def _connect_refining(m, registers, framer, threshold, refining):
         m.d.comb += [
             refining.threshold.eq(registers.threshold.level),
-            refining.automatic.eq(registers.threshold.automatic),
+            refining.is_automatic.eq(registers.threshold.automatic),
             threshold.level.eq(refining.level),
             registers.level.threshold.eq(refining.level),
             refining.bright.eq(registers.control.bright),

@@ -26,7 +26,7 @@ def engine():
 
 
 def settings(level, *, contrast=16, bright=0, automatic=0, rows=SIZE[1]):
-    return {"threshold": level, "contrast": contrast, "bright": bright, "automatic": automatic, "rows": rows}
+    return {"threshold": level, "contrast": contrast, "bright": bright, "is_automatic": automatic, "rows": rows}
 
 
 def blurred(random, spread=40):

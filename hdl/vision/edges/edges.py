@@ -44,8 +44,8 @@ class Edges(wiring.Component):
     Members
     -------
     i : In(unstalled(GreyPixel))
-    threshold, contrast : In(8), automatic, bright : In(1)
-        As :class:`~hdl.vision.edges.locator.Locator` says; taken with a frame's first pixel. With ``automatic`` the
+    threshold, contrast : In(8), is_automatic, bright : In(1)
+        As :class:`~hdl.vision.edges.locator.Locator` says; taken with a frame's first pixel. With ``is_automatic`` the
         threshold is the level of the frame before, see :class:`~hdl.vision.edges.frame_level.FrameLevel`.
     rows : In(16)
         Of the frame in progress.
@@ -71,7 +71,7 @@ class Edges(wiring.Component):
                 "i": In(unstalled(GreyPixel)),
                 "threshold": In(8),
                 "contrast": In(8),
-                "automatic": In(1),
+                "is_automatic": In(1),
                 "bright": In(1),
                 "rows": In(16),
                 "level": Out(8),
@@ -97,7 +97,7 @@ class Edges(wiring.Component):
             frame_level.row.eq(self.row),
             frame_level.rows.eq(self.rows),
             frame_level.start.eq(self.threshold),
-            frame_level.automatic.eq(self.automatic),
+            frame_level.is_automatic.eq(self.is_automatic),
             self.level.eq(frame_level.level),
         ]
         given = Cat(self.level, self.contrast, self.bright)

@@ -43,9 +43,9 @@ class FrameLevel(wiring.Component):
         Of :class:`~hdl.vision.edges.edges.Edges`.
     rows : In(16)
         Of the frame in progress.
-    start : In(8), automatic : In(1)
+    start : In(8), is_automatic : In(1)
     level : Out(8)
-        It is ``start`` while ``automatic`` is clear, and after that until a frame has told another one.
+        It is ``start`` while ``is_automatic`` is clear, and after that until a frame has told another one.
 
     Model: :func:`sim.models.edges.frame_level`. Source: Kittler, Illingworth, Föglein, "Threshold selection based on a
     simple image statistic", CVGIP 30 (1985), weighs levels by their gradients; edges instead of pixels are ours.
@@ -63,7 +63,7 @@ class FrameLevel(wiring.Component):
                 "row": In(self._row),
                 "rows": In(16),
                 "start": In(BITS),
-                "automatic": In(1),
+                "is_automatic": In(1),
                 "level": Out(BITS),
             }
         )
@@ -111,7 +111,7 @@ class FrameLevel(wiring.Component):
                 m.d.sync += rest.eq(left)
         with m.Elif(steps == 1):
             m.d.sync += [steps.eq(0), kept.eq(quotient), is_known.eq(1)]
-        with m.If(~self.automatic):
+        with m.If(~self.is_automatic):
             m.d.sync += is_known.eq(0)
-        m.d.comb += self.level.eq(Mux(self.automatic & is_known, kept, self.start))
+        m.d.comb += self.level.eq(Mux(self.is_automatic & is_known, kept, self.start))
         return m

@@ -43,7 +43,7 @@ class Refining(wiring.Component):
     Members
     -------
     pixels : In(unstalled(GreyPixel))
-    threshold, automatic, contrast, bright : In, level : Out(8)
+    threshold, is_automatic, contrast, bright : In, level : Out(8)
         See :class:`~hdl.vision.edges.edges.Edges`.
     i : In(unstalled(marker_layout(width, height)))
     columns, rows : In(16)
@@ -62,7 +62,7 @@ class Refining(wiring.Component):
             {
                 "pixels": In(unstalled(GreyPixel)),
                 "threshold": In(8),
-                "automatic": In(1),
+                "is_automatic": In(1),
                 "contrast": In(8),
                 "bright": In(1),
                 "level": Out(8),
@@ -90,7 +90,7 @@ class Refining(wiring.Component):
         m.d.comb += [
             *(
                 getattr(edges, name).eq(getattr(self, name))
-                for name in ("threshold", "automatic", "contrast", "bright")
+                for name in ("threshold", "is_automatic", "contrast", "bright")
             ),
             edges.rows.eq(self.rows),
             self.level.eq(edges.level),
