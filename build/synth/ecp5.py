@@ -5,6 +5,7 @@ import pathlib
 import re
 import shutil
 
+from build.synth.block_registers import pack_block_registers
 from build.synth.harness import ports_of, shell
 from build.tools import nextpnr_ecp5, yosys
 
@@ -32,6 +33,10 @@ def netlist(top, files, folder):
         f"synth_ecp5 -top {top} -run coarse: -json {top}.json",
     )
     yosys("\n".join(passes) + "\n", folder)
+    file = pathlib.Path(folder, f"{top}.json")
+    cells = json.loads(file.read_text())
+    pack_block_registers(cells)
+    file.write_text(json.dumps(cells))
 
 
 def place_and_route(top, sources, folder, *, target_mhz, seed=1):

@@ -1,15 +1,15 @@
 """Operations of the control in, completed components out: the features of every open component."""
 
-from amaranth import Cat, Module, Mux, Signal, signed, unsigned
-from amaranth.lib import data, wiring
-from amaranth.lib.memory import Memory
+from amaranth import Cat, Module, Signal, signed, unsigned
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hdl.config import DIRECTIONS
 from hdl.pixels import ItemKind, unstalled
 from hdl.vision.blob import Support, blob_layout, sum_bits
+from hdl.vision.segmentation.labelling import operation_layout, slot_count
 from hdl.vision.segmentation.lanes import ExtremeLane, SumLane, control_layout
-from hdl.vision.segmentation.nesting import Mark, operation_layout, slot_count
+from hdl.vision.segmentation.nesting import Mark
 from hdl.vision.segmentation.schedule import Schedule
 
 __all__ = ["Features"]
@@ -20,12 +20,12 @@ class Features(wiring.Component):
 
     ::
 
-        operation -> schedule -> part -> address -> memory -> operands -> combine -> accumulator, memory
-                             clock 0       1         2           3            4
+        operation -> schedule -> part -> address -> memory -> register -> operands -> combine -> accumulator, memory
+                             clock 0         1         2           3           4
 
     Throughput: one part of an operation a clock: load, merge, finish, run or mark; see :class:`Schedule`.
 
-    Latency: 7 clocks from a finishing operation to its component when the queue is empty.
+    Latency: 9 clocks from a finishing operation to its component when the queue is empty.
 
     Members
     -------
@@ -59,20 +59,20 @@ class Features(wiring.Component):
             self.overflow.eq(schedule.overflow),
         ]
 
-        # Clock 1 to 3: the part on its way, with the run's features worked out beside it.
-        layout = data.StructLayout({"read": part.read.shape()} | dict(control_layout(depth).members))
-        now = Signal(layout)
+        # Clock 1 to 4: the part on its way, with the run's features worked out beside it.
+        now = Signal(control_layout(depth))
         m.d.comb += [
-            now.read.eq(part.read),
             now.fetch.eq(issue & (part.load | (part.finish | part.run) & ~part.held)),
             now.second_fetched.eq(part.merge),
             now.write.eq(issue & (part.merge | part.run)),
             now.slot.eq(part.slot),
-            now.fresh.eq(part.run & operation.new),
+            now.fresh.eq(issue & part.run & operation.new),
         ]
-        stages = [Signal(layout, name=f"part{k}") for k in (1, 2, 3)]
-        outputs = [Signal(2, name=f"output{k}") for k in (1, 2, 3)]  # a component, a mark
-        marks = [Signal(Mark, name=f"mark{k}") for k in (1, 2, 3)]
+        address = Signal.like(part.read)
+        m.d.sync += address.eq(part.read)
+        stages = [Signal(now.shape(), name=f"part{k}") for k in (1, 2, 3, 4)]
+        outputs = [Signal(2, name=f"output{k}") for k in (1, 2, 3, 4)]  # a component, a mark
+        marks = [Signal(Mark, name=f"mark{k}") for k in (1, 2, 3, 4)]
         for stage, previous in zip(stages, [now, *stages], strict=False):
             m.d.sync += stage.eq(previous)
         for stage, previous in zip(outputs, [Cat(issue & part.finish, issue & part.mark), *outputs], strict=False):
@@ -81,35 +81,30 @@ class Features(wiring.Component):
             m.d.sync += stage.eq(previous)
         control = Signal(control_layout(depth))
         m.d.comb += [
-            *(control[name].eq(stages[1][name]) for name in ("fetch", "second_fetched")),
-            *(control[name].eq(stages[2][name]) for name in ("write", "slot", "fresh")),
+            *(control[name].eq(stages[2][name]) for name in ("fetch", "fresh", "second_fetched")),
+            *(control[name].eq(stages[3][name]) for name in ("write", "slot")),
         ]
 
         sums = self._run_sums(m, operation)
         supports = self._run_supports(m, operation)
 
-        # Clock 3: combine; or show the first operand.
-        m.d.comb += self.o.valid.eq(outputs[2].any())
-        with m.If(outputs[2][0]):
+        # Clock 4: combine; or show the first operand.
+        m.d.comb += self.o.valid.eq(outputs[3].any())
+        with m.If(outputs[3][0]):
             m.d.comb += self.o.p.kind.eq(ItemKind.ITEM)
-        with m.Elif(marks[2] == Mark.END):
+        with m.Elif(marks[3] == Mark.END):
             m.d.comb += self.o.p.kind.eq(ItemKind.END)
         with m.Else():
             m.d.comb += self.o.p.kind.eq(ItemKind.ABORT)
         lanes = {name: (SumLane, shape, leaf, self.o.p[name]) for name, (leaf, shape) in sums.items()}
         for k, (leaf, support) in enumerate(supports):
             lanes[f"extreme{k}"] = (ExtremeLane, support.shape, leaf, self.o.p.extremes[f"e{k}"])
-        word = data.StructLayout({name: shape for name, (_, shape, _, _) in lanes.items()})
-        m.submodules.slots = slots = Memory(shape=word, depth=depth, init=[])
-        read, write = slots.read_port(), slots.write_port()
-        m.d.comb += [read.addr.eq(stages[0].read), write.addr.eq(control.slot), write.en.eq(control.write)]
         for name, (kind, shape, leaf, output) in lanes.items():
             m.submodules[name] = lane = kind(shape=shape, depth=depth)
             m.d.comb += [
                 lane.control.eq(control),
+                lane.address.eq(address),
                 lane.leaf.eq(leaf),
-                lane.fetched.eq(read.data[name]),
-                write.data[name].eq(lane.result),
                 output.eq(lane.first),
             ]
         extremes = self.o.p.extremes
@@ -119,49 +114,37 @@ class Features(wiring.Component):
         return m
 
     @staticmethod
-    def _delayed(m, value):
-        """``value`` two clocks later."""
-        for _ in range(2):
+    def _delayed(m, value, clocks):
+        """``value`` that many clocks later."""
+        for _ in range(clocks):
             stage = Signal.like(value, reset_less=True)
             m.d.sync += stage.eq(value)
             value = stage
         return value
 
     def _run_sums(self, m, operation):
-        """Sums of the run and of the gap before it, and its Euler number, two clocks after the part is issued."""
+        """Sums of the run and of the gap before it, and its Euler number, three clocks after the part is issued."""
         area_shape, x_shape, y_shape = (unsigned(bits) for bits in sum_bits(self._width, self._height))
-        lengths = {}
-        gap_ends = Signal(len(operation.start) + 1, reset_less=True)
-        for prefix, x0, x1, used in (
-            ("", operation.start, operation.stop, 1),
-            ("gap_", operation.gap_start, operation.start - 1, operation.gap),
-        ):
-            first, last = (
-                Signal(len(operation.start), name=f"{prefix}{n}", reset_less=True) for n in ("first", "last")
-            )
-            lengths[prefix] = length = Signal(len(operation.start) + 1, name=f"{prefix}length")
-            is_used = Signal(name=f"{prefix}used")
-            m.d.sync += [first.eq(x0), last.eq(x1), is_used.eq(used), length.eq(Mux(is_used, last - first + 1, 0))]
-            if prefix:
-                m.d.sync += gap_ends.eq(first + last)
-        gap_sum_x, gap_sum_y = Signal(x_shape), Signal(y_shape)
+        gap_length, gap_ends, y = (
+            self._delayed(m, value, 2) for value in (operation.gap_length, operation.gap_ends, operation.y)
+        )
+        double_sum_x = Signal(len(gap_ends) + len(gap_length), reset_less=True)
+        gap_sum_y = Signal(y_shape, reset_less=True)
+        m.d.sync += [double_sum_x.eq(gap_ends * gap_length), gap_sum_y.eq(y * gap_length)]
+        gap_sum_x = Signal(x_shape)
         euler = Signal(signed(len(operation.touches) + 1))
-        m.d.comb += [
-            gap_sum_x.eq((gap_ends * lengths["gap_"]) >> 1),
-            gap_sum_y.eq(self._delayed(m, operation.y) * lengths["gap_"]),
-            euler.eq(1 - self._delayed(m, operation.touches)),
-        ]
+        m.d.comb += [gap_sum_x.eq(double_sum_x >> 1), euler.eq(1 - self._delayed(m, operation.touches, 3))]
         return {
-            "area": (lengths[""], area_shape),
-            "gap_area": (lengths["gap_"], area_shape),
+            "area": (self._delayed(m, operation.length, 3), area_shape),
+            "gap_area": (self._delayed(m, gap_length, 1), area_shape),
             "gap_sum_x": (gap_sum_x, x_shape),
             "gap_sum_y": (gap_sum_y, y_shape),
             "euler": (euler, self.o.p.euler.shape()),
         }
 
     def _run_supports(self, m, operation):
-        """The run's furthest pixel in each direction, two clocks after the part is issued."""
-        start, stop, y = (self._delayed(m, value) for value in (operation.start, operation.stop, operation.y))
+        """The run's furthest pixel in each direction, three clocks after the part is issued."""
+        start, stop, y = (self._delayed(m, value, 3) for value in (operation.start, operation.stop, operation.y))
         leaves = []
         for k, direction in enumerate(DIRECTIONS):
             support = Support(direction, width=self._width, height=self._height)

@@ -7,6 +7,7 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 from hdl.pixels import BinaryPixel, unstalled
 from hdl.vision.blob import blob_layout
 from hdl.vision.segmentation.features import Features
+from hdl.vision.segmentation.labelling import Labelling
 from hdl.vision.segmentation.nesting import Nesting
 from hdl.vision.segmentation.scan import Scan
 
@@ -23,17 +24,17 @@ class Segmentation(wiring.Component):
 
     ::
 
-        pixels -> scan -> steps -> nesting -> operations -> features -> components
-                 1 row of bits     2 rows of run records    a slot per open component
+        pixels -> scan -> steps -> nesting -> decisions -> labelling -> operations -> features -> components
+                 1 row of bits    2 rows of marks      2 rows of slots        a slot per open component
 
-    Throughput: one pixel a clock, no blanking between rows or frames, any content. Only an endless series of tiny
-    frames (of one row, of up to 3 columns, or up to 4 x 4 and 5 x 2 pixels) needs a pause, of 2 clocks a frame, because
-    every frame has an END.
-    A narrower frame must not come before the one before is flushed: W + 12 clocks after its last pixel, which the
-    framer sees to. Latency: 12 clocks from the step that ends a component to its report.
+    Throughput: one pixel a clock, no blanking between rows or frames, any content. Only the narrowest frames need more:
+    of three columns, a clock more a row, and an endless series of tiny ones (of one row and up to 16 columns, or up to
+    4 x 8, 5 x 4 and 6 x 2) a pause of a few clocks a frame, because every frame has an END.
+    A narrower frame must not come before the one before is flushed: W + 16 clocks after its last pixel, which the
+    framer sees to. Latency: 16 clocks from the step that ends a component to its report.
 
-    Memory at 640 x 480: 640 bits of pixels, 7 kbit of run records, 6 kbit of stack, 3 kbit of slot numbers and
-    325 x 487 bits of features.
+    Memory at 640 x 480: 640 bits of pixels, 8 kbit of marks and slots of runs, 5 kbit of stacks, 3 kbit of slot numbers
+    and 328 x 487 bits of features.
 
     Parameters
     ----------
@@ -66,8 +67,10 @@ class Segmentation(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        m.submodules.scan = scan = Scan(**self._sizes)
-        m.submodules.nesting = nesting = Nesting(**self._sizes)
+        width = self._sizes["width"]
+        m.submodules.scan = scan = Scan(width=width)
+        m.submodules.nesting = nesting = Nesting(width=width)
+        m.submodules.labelling = labelling = Labelling(**self._sizes)
         m.submodules.features = features = Features(**self._sizes)
         connect(m, flipped(self.i), scan.i)
         m.d.comb += [
@@ -75,8 +78,10 @@ class Segmentation(wiring.Component):
             nesting.step.eq(scan.step),
             nesting.cut.eq(scan.cut),
             nesting.cut_row.eq(scan.cut_row),
-            features.i_valid.eq(nesting.o_valid),
-            features.i.eq(nesting.o),
+            labelling.i.eq(nesting.o),
+            nesting.late.eq(labelling.late),
+            features.i_valid.eq(labelling.o_valid),
+            features.i.eq(labelling.o),
             self.overflow.eq(features.overflow),
         ]
         connect(m, features.o, flipped(self.o))
