@@ -242,7 +242,7 @@ class Framer(wiring.Component):
             "is_two_rows": self._is(rows, 2),
             "is_one_pixel": is_one_column & is_one_row,
         }
-        layout = {name: 1 for name in looked}
+        layout = dict.fromkeys(looked, 1)
         looked |= {"pixel": pixel, "columns": columns, "rows": rows}
         layout |= {"pixel": CameraPixel, "columns": bits_for(self._width), "rows": bits_for(self._height)}
         start = Signal(data.StructLayout(layout), name="start")
