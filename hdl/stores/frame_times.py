@@ -5,8 +5,9 @@ and ``last_pixel`` become the times at which its first and its last pixel came i
 are, so frames that are skipped or cut leave no trace. They change in the same clock as the publisher's ``frame``.
 
 A strobe of the framer comes two clocks after its pixel, and a register is looked at one clock after the bus asked for
-it. So the counter lags by one clock and a stamp is one less than what it was at the strobe: that is what software that
-reads ``time`` gets if the clock of its read is that of the pixel at the camera's port; 0 is the first clock after a reset.
+it. So the counter lags by one clock, and a stamp is one less than what it was at the strobe: that is what software
+that reads ``time`` gets if the clock of its read is that of the pixel at the camera's port; 0 is the first clock after
+a reset.
 
 ::
 

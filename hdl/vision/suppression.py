@@ -152,8 +152,8 @@ class Suppression(wiring.Component):
         with m.If(ends | aborts):
             m.d.sync += [has_centre.eq(0), column.eq(0), in_top.eq(1)]
 
-        # No column is read while it is written: between its writing and its next reading are at least two clocks.
-        # So Yosys need not build what shows the old word.
+        # No column is read while it is written: its next reading is at least 4 steps behind the one before, and it is
+        # written 2 clocks after the first of these. So Yosys need not build what shows the old word.
         m.submodules.row = row = Memory(shape=_Stored, depth=self._width, init=[], attrs={"no_rw_check": 1})
         read, write = row.read_port(), row.write_port()
         m.d.comb += [read.en.eq(step), read.addr.eq(column)]
