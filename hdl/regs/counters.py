@@ -19,7 +19,7 @@ Model: :class:`sim.models.counters.Counters`.
 from functools import reduce
 from operator import or_
 
-from amaranth import Module, Mux, Signal
+from amaranth import Array, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
@@ -127,6 +127,6 @@ class Counters(wiring.Component):
         m.d.comb += [
             read.addr.eq(self.read_number),
             self.read_data.eq(read.data),
-            self.read_is_zero.eq(cleared.bit_select(shown, 1)),
+            self.read_is_zero.eq(Array(cleared)[shown]),
         ]
         return m
