@@ -27,12 +27,12 @@ Windows of the same register file show the same item: they are ways to one memor
 
 ::
 
-    address -> decoded -> | a bit for each register | -> AND with its fields -> OR of all -> | word | -.
-                                                                                                   OR -> | read_data |
-                                items out of memories -> | items | -> AND -> OR of all ------------'
+    address -> decoded -> | a bit for each register | -> AND with its fields -> OR of some -> | parts | -.
+                                                                                                    OR -> | read_data |
+                                items out of memories -> | items | -> AND -> OR of all -------------'
 
 This is the bank with a ``read_latency`` of 3. What comes out of a memory has a register before it is chosen from, and
-so have ``external`` registers. With a latency of 2 there are neither these nor the word. In either case a read tells
+so have ``external`` registers. With a latency of 2 there are neither these nor the parts. In either case a read tells
 how things stood in the clock after its address.
 
 Numbers: see :class:`~hdl.regs.bus.RegisterBus`. ``irq`` is a register: one clock after a flag that is enabled by
@@ -53,6 +53,10 @@ from hdl.regs.counters import Counters
 from hdl.regs.map import Behaviour, sensor_map
 
 __all__ = ["RegisterBank", "sensor_bank"]
+
+
+#: Registers of which one is chosen in one clock.
+_PART = 8
 
 
 def _field_ports(fields):
@@ -115,7 +119,7 @@ class RegisterBank(wiring.Component):
     Raises
     ------
     ValueError
-        If a window has other fields, or with another latency.
+        If a window has other fields, with another latency, or if counters of 32 bits do not follow each other.
 
     Members
     -------
@@ -137,6 +141,7 @@ class RegisterBank(wiring.Component):
                         path = f"{window.name}.{register.name}.{field.name}"
                         raise ValueError(f"{path}: a window can only be read")
         self.map = registers
+        self._counted = self._counters_in_memory(registers)
         super().__init__(
             {
                 "bus": In(RegisterBus(registers.addr_width)),
@@ -146,29 +151,48 @@ class RegisterBank(wiring.Component):
             }
         )
 
+    @staticmethod
+    def _counters_in_memory(registers):
+        """``[(register, field)]`` of the large counters: none if there is only one."""
+        counters = [
+            (register, field)
+            for register in registers.registers
+            for field in register.fields
+            if field.behaviour == Behaviour.COUNTER and field.width == 32
+        ]
+        if len(counters) < 2:  # one has nobody to share a memory with
+            return []
+        first = counters[0][0].offset
+        if any(register.offset != first + 4 * k for k, (register, _) in enumerate(counters)):
+            raise ValueError("Counters of 32 bits must follow each other")
+        return counters
+
     def elaborate(self, platform):
         m = Module()
         self._decode(m)
         values = {}  # (register, field) -> what software reads
-        words, late = self._count(m), []  # (asked, value)
+        words, late = [], self._count(m)  # (asked, value)
         for register in self.map.registers:
             asked = self._asked(m, register.name, self._hit(register.offset // 4))
             word = asked, self._register(m, register, asked, values)
             (late if register.external else words).append(word)
         for item, windows in self._windows().items():
-            for register in windows[0].registers:
-                hits = [self.bus.address.matches(self._pattern(window, register)) for window in windows]
-                asked = self._asked(m, f"{item}_{register.name}", _any(hits))
-                late.append((asked, self._item(item, register)))
+            hits = _any(self.bus.address.matches(self._pattern(window)) for window in windows)
+            asked, number = self._asked(m, item, hits), Signal(range(windows[0].stride // 4), name=f"{item}_number")
+            m.d.sync += number.eq(self.bus.address)
+            late += [
+                (asked & (number == register.offset // 4), self._item(item, register))
+                for register in windows[0].registers
+            ]
         self._connect_windows(m)
         if self._is_early:
             m.d.sync += self.bus.read_data.eq(_chosen(words + late))
         else:
-            word = Signal(32)
-            m.d.sync += [
-                word.eq(_chosen(words)),
-                self.bus.read_data.eq(word | _chosen([self._late(m, *one) for one in late])),
-            ]
+            parts = [_chosen(some) for some in self._some(words)]
+            parts = [self._kept(m, part) for part in parts]
+            late = [_chosen(some) for some in self._some([self._late(m, *one) for one in late])] or [C(0)]
+            late[-1] |= _any(parts)
+            m.d.comb += self.bus.read_data.eq(_any([self._kept(m, part) for part in late]))
         interrupts = [
             values[register.name, field.name] & values[field.enable]
             for register in self.map.registers
@@ -206,9 +230,21 @@ class RegisterBank(wiring.Component):
         return asked
 
     @staticmethod
+    def _some(words):
+        """Words in lists of those of which one is chosen in one clock."""
+        return [words[k : k + _PART] for k in range(0, len(words), _PART)]
+
+    @staticmethod
+    def _kept(m, value):
+        """A word a clock later."""
+        part = Signal(32, name="part")
+        m.d.sync += part.eq(value)
+        return part
+
+    @staticmethod
     def _late(m, asked, value):
         """The same a clock later, from registers that a memory can have as its own."""
-        asked_later, register = Signal(name=f"{asked.name}_later"), Signal(32, name="late", reset_less=True)
+        asked_later, register = Signal(name="asked_later"), Signal(32, name="late", reset_less=True)
         m.d.sync += [asked_later.eq(asked), register.eq(value)]
         return asked_later, register
 
@@ -221,35 +257,25 @@ class RegisterBank(wiring.Component):
 
     def _count(self, m):
         """The large counters, which share a memory, and what a read brings of them: a list of one or none."""
-        self._counted = [
-            (register, field)
-            for register in self.map.registers
-            for field in register.fields
-            if field.behaviour == Behaviour.COUNTER and field.width == 32
-        ]
-        if len(self._counted) < 2:  # one has nobody to share a memory with
-            self._counted = []
+        if not self._counted:
             return []
+        first = self._counted[0][0].offset // 4
         m.submodules.counters = counters = Counters(count=len(self._counted), width=32)
         hits = [self._hit(register.offset // 4) for register, _ in self._counted]
         events = [getattr(getattr(self, register.name), f"{field.name}_incr") for register, field in self._counted]
-        number = [_any(hit for k, hit in enumerate(hits) if k >> bit & 1) for bit in range(len(counters.read_number))]
         m.d.comb += [
             counters.events.eq(Cat(events)),
             counters.clears.eq(Cat(hit & self.bus.write for hit in hits)),
-            counters.read_number.eq(Cat(number)),
+            counters.read_number.eq(self.bus.address - first),
         ]
         asked = self._asked(m, "counters", _any(hits))
-        return [(asked, counters.read_data)]
+        return [(asked & ~counters.read_is_zero, counters.read_data)]
 
-    def _bits(self, number, width):
-        return format(number, f"0{width}b") if width else ""
-
-    def _pattern(self, window, register=None):
-        """Word addresses of a window, or of one register of all its items."""
+    def _pattern(self, window):
+        """Word addresses of a window."""
         low, high = (window.stride // 4 - 1).bit_length(), (window.count - 1).bit_length()
-        prefix = self._bits(window.offset // 4 >> low + high, self.map.addr_width - low - high)
-        return prefix + "-" * high + (self._bits(register.offset // 4, low) if register else "-" * low)
+        prefix = format(window.offset // 4, f"0{self.map.addr_width}b")[: self.map.addr_width - low - high]
+        return prefix + "-" * (high + low)
 
     def _connect_windows(self, m):
         for window in self.map.windows:

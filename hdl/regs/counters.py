@@ -2,7 +2,7 @@
 
 Contract: each counter counts the clocks with its ``event``, stops at its greatest number, and becomes 0 by ``clear``;
 an event in the clock of ``clear`` counts. What a read tells is a value that the counter had at some time in the last
-``lag`` clocks, never one from before a ``clear``.
+``lag`` clocks, never one from before a ``clear`` in a clock before the read's.
 
 ::
 
@@ -16,7 +16,10 @@ counter, twice, for it has two readers.
 Model: :class:`sim.models.counters.Counters`.
 """
 
-from amaranth import Array, Cat, Module, Mux, Signal
+from functools import reduce
+from operator import or_
+
+from amaranth import Array, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
@@ -43,7 +46,9 @@ class Counters(wiring.Component):
         A bit each: counts one, begins anew.
     read_number : In(range(count))
     read_data : Out(width)
-        That counter, a clock later.
+        That counter, a clock later, unless it is zero: straight from the memory.
+    read_is_zero : Out(1)
+        With it: it is.
     """
 
     def __init__(self, *, count, width):
@@ -56,6 +61,7 @@ class Counters(wiring.Component):
                 "clears": In(count),
                 "read_number": In(range(count)),
                 "read_data": Out(width),
+                "read_is_zero": Out(1),
             }
         )
 
@@ -68,52 +74,59 @@ class Counters(wiring.Component):
         m = Module()
         m.submodules.memory = memory = Memory(shape=self._width, depth=1 << bits_for(self._count - 1), init=[])
         write, read, own = memory.write_port(), memory.read_port(), memory.read_port()
-        phase, number = Signal(range(_PHASES)), Signal(range(self._count))
-        turn = Signal(len(number) + 2)  # over all powers of two, so that the number's bits are its own
-        m.d.sync += turn.eq(turn + 1)
-        m.d.comb += Cat(phase, number).eq(turn)
-        pending = Array(Signal(range(self.lag + 1), name=f"pending{k}") for k in range(self._count))
+        # A turn has a number, over all powers of two, and a phase; what it decides is decoded a clock ahead.
+        turn = Signal(bits_for(self._count - 1) + bits_for(_PHASES - 1))
+        number, next_turn = turn[2:], Signal.like(turn)
+        current, is_first_phase, is_last_phase = Signal(self._count, init=1), Signal(init=1), Signal()
+        m.d.comb += next_turn.eq(turn + 1)
+        m.d.sync += [
+            turn.eq(next_turn),
+            current.eq(1 << next_turn[2:]),
+            is_first_phase.eq(next_turn[:2] == 0),
+            is_last_phase.eq(next_turn[:2] == _PHASES - 1),
+        ]
+        pending = [Signal(range(self.lag + 1), name=f"pending{k}") for k in range(self._count)]
+        event, clear = Signal(self._count), Signal(self._count)
+        m.d.sync += [event.eq(self.events), clear.eq(self.clears)]
         cleared = Signal(self._count, init=-1)  # also after a reset, which the memory does not mind
-        is_cleared, is_clearing = Array(cleared)[number], Array(self.clears)[number]
-        exists = number < self._count
 
         # Phase 0: read; and take what is pending, or leave it until a 0 is written.
-        begins, writes = Signal(), Signal()
-        amount, zero, spoilt = Signal.like(pending[0]), Signal(), Signal()
-        m.d.comb += [begins.eq((phase == 0) & exists), own.addr.eq(number)]
-        with m.If(begins):
-            m.d.sync += [zero.eq(is_cleared), amount.eq(pending[number])]
-            with m.If(is_cleared):
-                m.d.sync += amount.eq(0)
-        # Phase 1: what was read. Phase 2: the sum. Phase 3: write, unless the counter was cleared meanwhile.
+        takes, amount, zero = Signal(self._count), Signal.like(pending[0]), Signal()
+        m.d.comb += [
+            takes.eq(current & ~cleared & is_first_phase.replicate(self._count)),
+            own.addr.eq(number),
+        ]
+        with m.If(is_first_phase):
+            m.d.sync += [
+                zero.eq((current & cleared).any()),
+                amount.eq(reduce(or_, (p & take.replicate(len(p)) for p, take in zip(pending, takes, strict=True)))),
+            ]
+        # Phase 1: what was read. Phase 2: the sum. Phase 3: write. A counter that was cleared meanwhile is marked
+        # so, and what is written does not matter.
         stored = Signal(self._width, reset_less=True)
         total = Signal(self._width + 1, reset_less=True)
         m.d.sync += [stored.eq(own.data), total.eq(stored + amount)]
-        m.d.sync += spoilt.eq(is_clearing | spoilt & (phase != 0))
         m.d.comb += [
-            writes.eq((phase == _PHASES - 1) & exists & ~spoilt & ~is_clearing),
             write.addr.eq(number),
-            write.en.eq(writes),
+            write.en.eq(is_last_phase),
             write.data.eq(Mux(zero, 0, total[:-1] | total[-1].replicate(self._width))),
         ]
         # A clock later, so that a read in the clock of the write does not show what was before it.
-        cleaned, cleaned_number = Signal(), Signal.like(number)
-        m.d.sync += [cleaned.eq(writes & zero), cleaned_number.eq(number)]
-        event = Signal(self._count)
-        m.d.sync += event.eq(self.events)
-        for k in range(self._count):
-            m.d.sync += pending[k].eq(pending[k] + event[k])
-            with m.If(begins & (number == k) & ~cleared[k]):
-                m.d.sync += pending[k].eq(event[k])
-            with m.If(cleaned & (cleaned_number == k)):
-                m.d.sync += cleared[k].eq(0)
-            with m.If(self.clears[k]):
-                m.d.sync += [pending[k].eq(0), cleared[k].eq(1)]
+        cleaned = Signal(self._count)
+        m.d.sync += [
+            cleaned.eq(current & (is_last_phase & zero).replicate(self._count)),
+            cleared.eq(cleared & ~cleaned | clear),
+            *(
+                p.eq(Mux(take | forget, 0, p) + e)
+                for p, take, forget, e in zip(pending, takes, clear, event, strict=True)
+            ),
+        ]
 
         shown = Signal(range(self._count))
         m.d.sync += shown.eq(self.read_number)
         m.d.comb += [
             read.addr.eq(self.read_number),
-            self.read_data.eq(Mux(Array(cleared)[shown], 0, read.data)),
+            self.read_data.eq(read.data),
+            self.read_is_zero.eq(Array(cleared)[shown]),
         ]
         return m

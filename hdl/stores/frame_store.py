@@ -14,8 +14,8 @@ Contract: two banks. Every ``ITEM`` goes to the next word of the bank that is be
 
 Numbers: one beat a clock. An item is readable by ``read_live`` from the clock after its beat on, which is
 when ``live_count`` says so; ``read_data`` comes one clock after ``read_addr`` and ``read_live``. Words from
-``count``, or ``live_count``, on are leftovers of other frames, and anything after power-up. ``dropped`` stops
-at 65535.
+``count``, or ``live_count``, on are leftovers of other frames, and anything after power-up and in the clock in which
+they are written. ``dropped`` stops at 65535.
 """
 
 from amaranth import Cat, Module, Mux, Signal
@@ -96,7 +96,10 @@ class FrameStore(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        m.submodules.memory = memory = Memory(shape=self._shape, depth=2 * self._depth, init=[])
+        # A word that is read while it is written is not counted yet, so Yosys need not build what shows the old one.
+        m.submodules.memory = memory = Memory(
+            shape=self._shape, depth=2 * self._depth, init=[], attrs={"no_rw_check": 1}
+        )
         write, read = memory.write_port(), memory.read_port()
         writing = Signal()  # the bank
         is_full = self.live_count[-1]

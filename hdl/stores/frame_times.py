@@ -4,21 +4,22 @@ Contract: ``time`` counts clocks from reset on and wraps. When the blob stream's
 and ``last_pixel`` become the times at which its first and its last pixel came in; any other mark leaves them as they
 are, so frames that are skipped or cut leave no trace. They change in the same clock as the publisher's ``frame``.
 
-A strobe of the framer comes one clock after its pixel, and a register is looked at one clock after the bus asked for
-it. So the counter lags by one clock as well: a stamp is what software that reads ``time`` gets if the clock of its
-read is that of the pixel at the camera's port; 0 is the first clock after a reset.
+A strobe of the framer comes two clocks after its pixel, and a register is looked at one clock after the bus asked for
+it. So the counter lags by one clock, and a stamp is one less than what it was at the strobe: that is what software
+that reads ``time`` gets if the clock of its read is that of the pixel at the camera's port; 0 is the first clock after
+a reset.
 
 ::
 
-    started --first--> [first] --last--> [ended first] --END--> first_pixel
-    time    ---------------------last--> [ended last]  --END--> last_pixel
+    time --first--> [started] --last--> [ended first] --END, - 1--> first_pixel
+    time ---------------------last--> [ended last]  --END, - 1--> last_pixel
 
 One frame that ended and is not decided is enough: frame k's ``END`` comes at most columns + 64 clocks after its last
 pixel (the framer's settling time), and from 16 x 16 pixels up the last pixel of frame k + 1 comes at least
 16 columns >= columns + 240 clocks after it. What is needed here is less: an ``END`` comes after its frame's ``last``
 strobe and not after the next one.
 
-Numbers: 6 registers of ``bits`` bits, no arithmetic but the counter's.
+Numbers: 6 registers of ``bits`` bits, each on its own or behind a sum with 1.
 
 Model: :func:`sim.models.frame_times.frame_times` is bit-exact.
 """
@@ -48,7 +49,7 @@ class FrameTimes(wiring.Component):
     Members
     -------
     first, last : :py:`In(1)`
-        Strobes, one clock after the first and after the last pixel of a frame. Never both: a frame has two pixels.
+        Strobes, two clocks after the first and after the last pixel of a frame. Never both: a frame has two pixels.
     i_valid : :py:`In(1)`
         There is a beat of the blob stream, with the publisher's decision.
     i_kind : :py:`In(ItemKind)`
@@ -84,5 +85,5 @@ class FrameTimes(wiring.Component):
         with m.If(self.last):
             m.d.sync += [ended_first.eq(started), ended_last.eq(self.time)]
         with m.If(self.i_valid & (self.i_kind == ItemKind.END)):
-            m.d.sync += [self.first_pixel.eq(ended_first), self.last_pixel.eq(ended_last)]
+            m.d.sync += [self.first_pixel.eq(ended_first - 1), self.last_pixel.eq(ended_last - 1)]
         return m

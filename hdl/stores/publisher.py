@@ -109,23 +109,33 @@ class Publisher(wiring.Component):
         with m.If(self.skipped):
             m.d.comb += self.o_blob.payload.kind.eq(ItemKind.SKIP)
 
-        # A corner END is of frame ``corner_number``, whose low bits are enough. It is decided once ``number``
-        # is beyond that.
-        corner_number, waits = Signal(8), Signal()
-        corner_done, corner_ends, corner_publishes = Signal(), Signal(), Signal()
+        # Corner ENDs still to leave: of all frames that are decided, and of those before the one that was taken.
+        # Whether there are any is a register, for much follows from it in one clock.
+        owed, before, is_owed, is_next, owes_last = Signal(8), Signal(8), Signal(), Signal(), Signal()
+        corner_done, corner_ends, corner_publishes, waits = Signal(), Signal(), Signal(), Signal()
         has_corner_end = self._is(self.i_corner, ItemKind.END)
         m.d.comb += [
-            corner_ends.eq((has_corner_end | waits) & (corner_number != number[:8])),
-            corner_publishes.eq(self.pending & ~corner_done & (corner_number == self.frame[:8])),
+            corner_ends.eq((has_corner_end | waits) & is_owed),
+            corner_publishes.eq(self.pending & ~corner_done & is_next),
+            owes_last.eq(corner_ends & (owed == 1)),
             # An ABORT behind a waiting END has nothing to void, and would void that END's frame.
             self.o_corner.valid.eq(corner_ends | self.i_corner.valid & ~has_corner_end & ~waits),
             self.o_corner.payload.eq(self.i_corner.payload),
         ]
         with m.If(corner_ends):
             m.d.comb += self.o_corner.payload.kind.eq(Mux(corner_publishes, ItemKind.END, ItemKind.SKIP))
-            m.d.sync += [corner_number.eq(corner_number + 1), waits.eq(0)]
+            m.d.sync += waits.eq(0)
         with m.Elif(has_corner_end):
             m.d.sync += waits.eq(1)
+        m.d.sync += is_owed.eq(self.complete | is_owed & ~owes_last)
+        with m.If(self.complete & ~corner_ends):
+            m.d.sync += owed.eq(owed + 1)
+        with m.Elif(corner_ends & ~self.complete):
+            m.d.sync += owed.eq(owed - 1)
+        with m.If(take):
+            m.d.sync += [before.eq(owed - corner_ends), is_next.eq(~is_owed | owes_last)]
+        with m.Elif(corner_ends):
+            m.d.sync += [before.eq(before - 1), is_next.eq(before == 1)]
 
         # Matching was told, so only the frame that was taken has an END here.
         marker_done, marker_ends = Signal(), Signal()
@@ -153,7 +163,7 @@ class Publisher(wiring.Component):
                 corner_done.eq(0),
                 marker_done.eq(0),
             ]
-        with m.Elif(self.pending):
+        with m.If(self.pending):  # and so not ``take``
             m.d.sync += [corner_done.eq(all_corners), marker_done.eq(all_markers)]
             with m.If(all_corners & all_markers):
                 m.d.sync += [self.pending.eq(0), self.valid.eq(1), self.published.eq(1)]

@@ -1,23 +1,21 @@
-"""Which pixels of a circle differ from its centre by more than a threshold, on the one side that can matter.
+"""The limit that a circle's pixels are compared with, on the one side of its centre that can matter.
 
 Contract: ``is_bright`` is set if the centre can only be brighter than an arc of 9 or more contiguous pixels, and
-clear if it can only be darker than one. A pixel's bit in ``above`` is set if it is at the limit on that side or
-above it: with ``is_clear`` clear, the set bits are the pixels brighter than the centre by more than the threshold;
-with ``is_clear`` set, the clear bits are the pixels darker by more than that.
+clear if it can only be darker than one. With ``is_clear`` clear, the pixels that reach ``limit`` are those brighter
+than the centre by more than the threshold; with ``is_clear`` set, those that do not reach it are the pixels darker by
+more than that.
 
 Algorithm: of the nine pixels ``EARLY``, two apart but for two pairs, any arc of 9 contiguous pixels holds at least
 five, because the 7 pixels left over hold at most four. So if there is an arc that is darker, five of the nine are
 below the centre; if there is one that is brighter, at most four are. One limit, centre - threshold or centre +
 threshold + 1, is enough for all 16 pixels then. If it lies beyond the range of a level no pixel counts: the limit
-is 0, which all reach, and the clear bits are looked for.
+is 0, which all reach, and those that do not are looked for.
 
 ::
 
-    step 0  early - centre         2  side; both limits less the range       4  above
-         1  majority of nine       3  limit, circle
+    step 0  early - centre         1  majority of nine       2  side; both limits less the range       3  limit
 
-Numbers: one neighbourhood a clock; ``is_bright`` 2 clocks and ``above`` 4 clocks after ``early``. 25 comparisons of
-8 bits, not 32.
+Numbers: one neighbourhood a step, latency 3 steps. 25 comparisons of 8 bits with those of the circle, not 32.
 
 Model: :func:`sim.models.fast.fast` holds it, with both sides in full.
 """
@@ -47,7 +45,7 @@ def _majority_of_nine(bits):
 
 
 class Contrast(wiring.Component):
-    """Compare a circle with its centre.
+    """Find the limit.
 
     Members
     -------
@@ -56,25 +54,20 @@ class Contrast(wiring.Component):
     early, early_centre
         Nine pixels of the circle, and the centre.
     near_centre : :py:`In(8)`
-        The centre one clock later.
-    circle
-        The circle three clocks later.
-    is_bright : :py:`Out(1)`
-        2 clocks after ``early``, with it the neighbourhood's side.
-    above : :py:`Out(16)`
-        4 clocks after ``early``.
-    is_clear : :py:`Out(1)`
-        What to look for in ``above``.
+        The centre one step later.
+    is_bright, is_clear : :py:`Out(1)`
+        3 steps after ``early``: the side, and what to look for.
+    limit : :py:`Out(8)`
+        With them.
     """
 
     threshold: In(8)
     early: In(data.ArrayLayout(8, len(EARLY)))
     early_centre: In(8)
     near_centre: In(8)
-    circle: In(data.ArrayLayout(8, 16))
     is_bright: Out(1)
-    above: Out(16)
     is_clear: Out(1)
+    limit: Out(8)
 
     def elaborate(self, platform):
         m = Module()
@@ -87,14 +80,12 @@ class Contrast(wiring.Component):
         low, high = Signal(9, reset_less=True), Signal(9, reset_less=True)
         m.d.sync += [low.eq(self.near_centre - self.threshold), high.eq(self.near_centre - ~self.threshold)]
         is_beyond = Signal()
-        limit, above = Signal(8, reset_less=True), Signal(16, reset_less=True)
-        is_clear, was_clear = Signal(reset_less=True), Signal(reset_less=True)
+        limit, is_clear, was_bright = Signal(8, reset_less=True), Signal(reset_less=True), Signal(reset_less=True)
         m.d.comb += is_beyond.eq(Mux(is_bright, low[8], ~high[8]))
         m.d.sync += [
             limit.eq(Mux(is_beyond, 0, Mux(is_bright, low[:8], high[:8]))),
             is_clear.eq(is_bright | is_beyond),
-            above.eq(Cat(self.circle[k] >= limit for k in range(16))),
-            was_clear.eq(is_clear),
+            was_bright.eq(is_bright),
         ]
-        m.d.comb += [self.is_bright.eq(is_bright), self.above.eq(above), self.is_clear.eq(was_clear)]
+        m.d.comb += [self.is_bright.eq(was_bright), self.is_clear.eq(is_clear), self.limit.eq(limit)]
         return m

@@ -1,43 +1,41 @@
-"""The pipeline behind FAST: window, contrast, arc and score, step by step.
+"""From neighbourhoods to positions: arc and score, clock by clock.
 
-Contract: as :class:`hdl.vision.fast.Fast`, which decides on the steps; every step brings the position of the pixel
-that came ``STEPS`` + 1 steps before, if there was one. ``settings`` are those of the frame that began last; they come
-into force when its first pixel leaves the pipeline: by then no pixel of the frame before is in it, and the first
-pixel that can be a corner comes at least 48 steps after the frame's first.
+Contract: ``LATENCY`` clocks after a neighbourhood comes its position. ``settings`` are those of the frame that began
+last; they come into force when its first pixel leaves the pipeline: by then no pixel of the frame before is in it, and
+the first pixel that can be a corner comes at least 48 pixels after the frame's first. :class:`Neighbourhood
+<hdl.vision.neighbourhood.Neighbourhood>` has its ``threshold`` from here.
 
 ::
 
-    pixel -> [window] -+-> [contrast] -> [arc: is it a corner] -+-> position
-                |      '-> [score] -----------------------------|
-                '-- marks: a memory ----------------------------'
+    centre -+-> circle >= limit -> [arc: is it a corner] -+-> position
+            |-> [score] ----------------------------------|
+            '-- level, marks: a memory -------------------'
 
-    step 1  marks               6..7   which pixels count       14  is it long enough
-         3  early pixels        8..13  the longest arc          23  position
-         6  circle              6..23  score
+    clock 0     which pixels count       8  is it long enough
+          1..7  the longest arc         16  position
+          0..16 score
 
-Numbers: ``STEPS`` + 1 steps. Memory: the window's rows, and some 2,500 bits in place of registers.
+Numbers: one neighbourhood a clock, without a stop. Memory: some 1,500 bits in place of registers.
 
 Model: :func:`sim.models.fast.fast` is bit-exact.
 """
 
 from amaranth import Cat, Module, Shape, Signal, unsigned
 from amaranth.lib import data, wiring
-from amaranth.lib.wiring import In, Out, connect, flipped
+from amaranth.lib.wiring import In, Out
 
-from hdl.pixels import GreyPixel, unstalled
 from hdl.vision.arc import Arc
-from hdl.vision.contrast import Contrast
 from hdl.vision.delay import Delay
+from hdl.vision.neighbourhood import Centre
+from hdl.vision.place import Marks
 from hdl.vision.score import Score
-from hdl.vision.window import Marks, Window
 
-__all__ = ["STEPS", "CornerTest", "Position", "Settings"]
+__all__ = ["LATENCY", "CornerTest", "Position", "Settings"]
 
-#: From a pixel's marks, which are known one step after it, to its position.
-STEPS = 22
+#: From a neighbourhood to its position.
+LATENCY = 17
 
-_TO_ARC = 13  # Those from the marks until it is known what arc there is.
-_FROM_ARC = STEPS - 1 - _TO_ARC
+_TO_ARC = 8  # Those until it is known what arc there is.
 
 
 class Position(data.Struct):
@@ -65,77 +63,76 @@ class Settings(data.Struct):
 
 
 class CornerTest(wiring.Component):
-    """Test and score of every pixel, in steps.
-
-    Parameters
-    ----------
-    width : int
-        Largest frame width in pixels, 1 to 4096.
+    """Test and score of every centre.
 
     Members
     -------
-    i : :py:`In(unstalled(GreyPixel))`
-        Frames, possibly cut short; from a first pixel on, and nothing between a last and the next first.
+    i_valid : :py:`In(1)`
+        There is a centre.
+    i : :py:`In(Centre)`
+        It.
     settings : :py:`In(Settings)`
         Those of the frame that began last.
+    threshold : :py:`Out(8)`
+        That of the frame whose first pixel's position came last.
     valid : :py:`Out(1)`
         There is a position.
     o : :py:`Out(Position)`
         The position.
     """
 
-    i: In(unstalled(GreyPixel))
+    i_valid: In(1)
+    i: In(Centre)
     settings: In(Settings)
+    threshold: Out(8)
     valid: Out(1)
     o: Out(Position)
 
-    def __init__(self, *, width):
-        self._width = width
-        super().__init__()
-
     def elaborate(self, platform):
         m = Module()
-        m.submodules.window = window = Window(width=self._width)
-        m.submodules.contrast = contrast = Contrast()
         m.submodules.arc = arc = Arc()
         m.submodules.score = score = Score()
-        connect(m, flipped(self.i), window.i)
 
-        # The marks go along with their pixel, the second part of the way together with what was found out.
-        early, late = Delay(width=Shape.cast(Marks).width + 1, steps=_TO_ARC), Delay(width=11, steps=_FROM_ARC)
-        m.submodules.early, m.submodules.late = early, late
-        marks, valid, fits, length = Signal(Marks), Signal(), Signal(), Signal(3)
-        m.d.comb += [early.i.eq(Cat(window.marks, window.valid)), Cat(marks, valid, fits, length).eq(late.o)]
+        # Level and marks go by what is found out of their centre.
+        waiting = LATENCY - 1
+        width = Shape.cast(Marks).width
+        m.submodules.passing = passing = Delay(width=width + 9, steps=waiting)
+        m.submodules.arcs = arcs = Delay(width=4, steps=waiting - _TO_ARC)
+        marks, level, valid, fits, length = Signal(Marks), Signal(8), Signal(), Signal(), Signal(3)
+        m.d.comb += [
+            passing.i.eq(Cat(self.i.marks, self.i.level, self.i_valid)),
+            Cat(marks, level, valid).eq(passing.o),
+            Cat(fits, length).eq(arcs.o),
+        ]
 
         # A memory keeps what came before a reset until it has gone through.
-        filled = Signal(range(STEPS + 1))
-        with m.If(filled != STEPS):
+        filled = Signal(range(waiting + 1))
+        with m.If(filled != waiting):
             m.d.sync += filled.eq(filled + 1)
-        m.d.sync += self.valid.eq(valid & (filled == STEPS))
+        m.d.sync += self.valid.eq(valid & (filled == waiting))
 
         held = Signal(Settings)
         with m.If(valid & marks.first):
             m.d.sync += held.eq(self.settings)
 
-        is_bright = Signal(reset_less=True)
-        m.d.sync += is_bright.eq(contrast.is_bright)
+        above, is_clear = Signal(16, reset_less=True), Signal(reset_less=True)
+        m.d.sync += [
+            above.eq(Cat(self.i.circle[k] >= self.i.limit for k in range(16))),
+            is_clear.eq(self.i.is_clear),
+        ]
         m.d.comb += [
-            contrast.threshold.eq(held.threshold),
-            contrast.early.eq(window.early),
-            contrast.early_centre.eq(window.early_centre),
-            contrast.near_centre.eq(window.near_centre),
-            contrast.circle.eq(window.circle),
-            arc.i.eq(contrast.above),
-            arc.is_clear.eq(contrast.is_clear),
-            score.circle.eq(window.circle),
-            score.is_bright.eq(is_bright),
+            self.threshold.eq(held.threshold),
+            arc.i.eq(above),
+            arc.is_clear.eq(is_clear),
+            score.circle.eq(self.i.circle),
+            score.is_bright.eq(self.i.is_bright),
             score.is_even.eq(held.least[0]),
             score.is_long.eq(held.least[1]),
-            score.late_centre.eq(window.late_centre),
+            score.late_centre.eq(level),
         ]
 
         fits_now, length_now = Signal(reset_less=True), Signal(3, reset_less=True)
-        m.d.comb += late.i.eq(Cat(early.o, fits_now, length_now))
+        m.d.comb += arcs.i.eq(Cat(fits_now, length_now))
         m.d.sync += [
             fits_now.eq(arc.found & (arc.length >= held.least) & (arc.length <= held.most) & ~held.none),
             length_now.eq(arc.length),

@@ -7,10 +7,10 @@ nothing. Frames may be any size from 1 x 1 up and follow each other without a ga
 frames that start within W + 64 clocks must have its size, which :class:`~hdl.vision.framer.Framer` sees to. Frames
 less than 7 pixels wide or high have no corners. All settings are taken with the frame's first pixel.
 
-Numbers: one pixel a clock. The corner (x, y) comes out 3 clocks after the 22nd pixel behind (x + 4, y + 4), or 25
+Numbers: one pixel a clock. The corner (x, y) comes out 21 clocks after the 4th pixel behind (x + 4, y + 4), or 25
 clocks after that one if the frame ends before; in the last row that can have corners, 4 rows above the frame's end,
 it comes 27 + x clocks after the frame's last pixel; ``END`` comes W + 24 clocks after it, or 25 if the frame has
-fewer than 7 columns or rows. Memory at 640 x 480: 6 rows of grey and one of bests, 40,320 bits, and 2,524 in place of
+fewer than 7 columns or rows. Memory at 640 x 480: 6 rows of grey and one of bests, 40,320 bits, and 2,484 in place of
 registers.
 
 Models: :func:`sim.models.fast.find_corners` is bit-exact.

@@ -8,13 +8,21 @@ Within 3 pixels of the border there are no corners. Pixels before a reset's firs
 ``last`` and the next ``first``, are dropped. The settings are taken in the clock of the pixel marked
 ``first`` and hold for its whole frame.
 
-Time goes in steps: everything in :class:`~hdl.vision.corner_test.CornerTest` moves on when a pixel comes, and
-in every clock after a frame's last pixel until its position has come out. So what belongs together is always as
-many steps apart as pixels, and can wait in memories instead of registers. The steps without a pixel may fall
-between the first 22 pixels of the next frame, but no neighbourhood has a pixel before the 42nd.
+Up to the neighbourhood time goes in steps: :class:`~hdl.vision.place.Place` moves on when a pixel comes, and in every
+clock after a frame's last pixel until its neighbourhood has come out, and
+:class:`~hdl.vision.neighbourhood.Neighbourhood` one clock later. So what belongs together is always as many steps apart
+as pixels, and can wait in memories instead of registers; and what a pixel reads of the rows above, in the clock of
+the next step, is there, two clocks later, in the clock of Neighbourhood's second next. The steps without a pixel may
+fall between the first pixels of the next frame, but no neighbourhood has a pixel before the 42nd. From the
+neighbourhood on there are no steps.
 
-Numbers: a position comes 23 steps after its pixel: one clock after the 22nd further pixel, and at most 23 clocks
-after a last one. Memory: the window's rows, and some 2 kbit in place of registers.
+::
+
+    pixel --step--> | place | --step, a clock later--> | neighbourhood | -> corner test -> position
+                        '-- read, step --> rows --> | above | --^
+
+Numbers: a position comes 19 clocks after the 4th further pixel, and at most 23 clocks after a last one. Memory: the
+rows, and some 2 kbit in place of registers.
 
 Model: :func:`sim.models.fast.fast` is bit-exact.
 """
@@ -24,7 +32,10 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hdl.pixels import GreyPixel, unstalled
-from hdl.vision.corner_test import STEPS, CornerTest, Position, Settings
+from hdl.vision.corner_test import CornerTest, Position, Settings
+from hdl.vision.neighbourhood import STEPS, Neighbourhood
+from hdl.vision.place import Place
+from hdl.vision.rows import Rows
 from hdl.vision.window import check_size
 
 __all__ = ["Fast"]
@@ -74,17 +85,18 @@ class Fast(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         pixel = self.i.payload
-        running, steps_due = Signal(), Signal(range(STEPS + 1))
-        taken, step, stepped = Signal(), Signal(), Signal()
+        running, steps_due = Signal(), Signal(range(STEPS))
+        # A register tells of a step, because so much waits for it.
+        taken, step, stepped, was_stepped = (Signal() for _ in range(4))
         m.d.comb += [
             taken.eq(self.i.valid & (pixel.first | running)),
             step.eq(taken | (steps_due != 0)),
         ]
-        m.d.sync += stepped.eq(step)
+        m.d.sync += [stepped.eq(step), was_stepped.eq(stepped)]
         with m.If(taken):
             m.d.sync += running.eq(~pixel.last)
         with m.If(taken & pixel.last):
-            m.d.sync += steps_due.eq(STEPS)
+            m.d.sync += steps_due.eq(STEPS - 1)
         with m.Elif(steps_due != 0):
             m.d.sync += steps_due.eq(steps_due - 1)
 
@@ -98,14 +110,29 @@ class Fast(wiring.Component):
                 settings.suppress.eq(self.suppress),
             ]
 
-        test = CornerTest(width=self._width)
-        m.submodules.test = EnableInserter(step)(test)
+        place, hood = Place(width=self._width), Neighbourhood(width=self._width)
+        m.submodules.place, m.submodules.neighbourhood = EnableInserter(step)(place), EnableInserter(stepped)(hood)
+        m.submodules.rows = rows = Rows(width=self._width)
+        m.submodules.test = test = CornerTest()
         m.d.comb += [
-            test.i.payload.eq(pixel),
-            test.i.valid.eq(taken),
+            place.i.payload.eq(pixel),
+            place.i.valid.eq(taken),
+            hood.i_valid.eq(place.valid),
+            hood.marks.eq(place.marks),
+            hood.level.eq(place.level),
+            hood.starts_row.eq(place.starts_row),
+            hood.threshold.eq(test.threshold),
+            rows.read.eq(place.valid & step),
+            rows.read_column.eq(place.column),
+            hood.above.eq(rows.o),
+            rows.write.eq(hood.write & stepped),
+            rows.write_column.eq(hood.write_column),
+            rows.i.eq(hood.written),
+            # A neighbourhood stays until the next step, but counts once.
+            test.i_valid.eq(hood.valid & was_stepped),
+            test.i.eq(hood.o),
             test.settings.eq(settings),
+            self.o.valid.eq(test.valid),
             self.o.payload.eq(test.o),
-            # A position stays until the next step, but counts once.
-            self.o.valid.eq(test.valid & stepped),
         ]
         return m

@@ -33,12 +33,16 @@ A complete frame is settled when more than ``columns`` + 64 clocks have passed s
 starts earlier must have its size, because the blocks that follow may still be finishing it. A frame that was
 cut short does not have to settle, nor does any outlive a reset.
 
-Numbers: one pixel a clock, latency 1 clock, all outputs are registers, no memory.
+::
+
+    pixel, columns, rows -> | pixel; is the size possible, that of the frame before, 1 or 2 | -> standing -> | o
+
+Numbers: one pixel a clock, latency 2 clocks, all outputs are registers, no memory.
 
 Model: :func:`sim.models.framer.framer` is bit-exact.
 """
 
-from amaranth import Module, Mux, Signal, unsigned
+from amaranth import C, Module, Mux, Signal, unsigned
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
@@ -132,60 +136,66 @@ class Framer(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        pixel = self.i.payload
+        start = self._look(m)
+        pixel = start.pixel
 
-        # Neither running nor complete: waiting for sof.
-        running, complete = Signal(), Signal()
-        column, last_column = Signal(bits_for(self._width - 1)), Signal(bits_for(self._width - 1))
-        row, last_row = Signal(bits_for(self._height - 1)), Signal(bits_for(self._height - 1))
+        # Neither running nor complete: waiting for sof. What the next pixel will be, if it does not start a frame.
+        running, complete, row_due = Signal(), Signal(), Signal()
+        in_last_column, in_last_row = Signal(), Signal()
+        column, row = Signal(bits_for(self._width - 1)), Signal(bits_for(self._height - 1))
+        second_last_column, second_last_row = Signal.like(column), Signal.like(row)
+
+        # A frame that began and ended in the clock before came too late for the comparison with its size.
+        settled, was_one_pixel, starts = Signal(init=1), Signal(), Signal()
+        m.d.comb += starts.eq(start.is_possible & (settled | Mux(was_one_pixel, start.is_one_pixel, start.is_same)))
+        m.d.sync += was_one_pixel.eq(starts & start.is_one_pixel & pixel.eol)
+        ends_row, forwarded, ends_frame = Signal(), Signal(), Signal()
+        goes_on = running & start.inner
+        m.d.comb += [
+            ends_row.eq(Mux(starts, start.is_one_column, in_last_column)),
+            forwarded.eq(Mux(starts, pixel.eol == start.is_one_column, goes_on & (pixel.eol == in_last_column))),
+            ends_frame.eq(
+                Mux(starts, pixel.eol & start.is_one_pixel, goes_on & pixel.eol & in_last_column & in_last_row)
+            ),
+        ]
+        with m.If(start.valid):
+            m.d.sync += [
+                running.eq(forwarded & ~ends_frame),
+                complete.eq(ends_frame),
+                row_due.eq(ends_row),
+            ]
+            with m.If(starts):
+                m.d.sync += [
+                    column.eq(~start.is_one_column),
+                    row.eq(start.is_one_column),
+                    self.frame_columns.eq(start.columns),
+                    self.frame_rows.eq(start.rows),
+                    second_last_column.eq(start.columns - 2),
+                    second_last_row.eq(start.rows - 2),
+                    in_last_column.eq(start.is_one_column | start.is_two_columns),
+                    in_last_row.eq(Mux(start.is_one_column, start.is_two_rows, start.is_one_row)),
+                ]
+            with m.Else():
+                m.d.sync += [
+                    column.eq(Mux(in_last_column, 0, column + 1)),
+                    row.eq(row + in_last_column),
+                    in_last_column.eq(Mux(in_last_column, self.frame_columns == 1, column == second_last_column)),
+                ]
+                with m.If(in_last_column):
+                    m.d.sync += in_last_row.eq(row == second_last_row)
 
         # Clocks until the last complete frame is settled. While there are any, frame_columns and frame_rows
         # are its size: every frame that was taken since has the same.
-        unsettled = Signal(range(self._width + SETTLING + 1))
-        size_is_good = Signal()
-        m.d.comb += size_is_good.eq(
-            (self.columns >= self._smallest)
-            & (self.columns <= self._width)
-            & (self.rows >= self._smallest)
-            & (self.rows <= self._height)
-            & ((unsettled == 0) | (self.columns == self.frame_columns) & (self.rows == self.frame_rows))
-        )
-        starts, belongs = Signal(), Signal()
-        m.d.comb += [
-            starts.eq(pixel.sof & self.enable & size_is_good),
-            belongs.eq(starts | (running & ~pixel.sof)),
-        ]
-
-        # Where this pixel is; a start counts as (0, 0) whatever the counters say.
-        ends_row, in_last_row = Signal(), Signal()
-        m.d.comb += [
-            ends_row.eq(Mux(starts, self.columns == 1, column == last_column)),
-            in_last_row.eq(Mux(starts, self.rows == 1, row == last_row)),
-        ]
-        forwarded, ends_frame = Signal(), Signal()
-        m.d.comb += [
-            forwarded.eq(self.i.valid & belongs & (pixel.eol == ends_row)),
-            ends_frame.eq(forwarded & ends_row & in_last_row),
-        ]
-
-        with m.If(self.i.valid):
-            m.d.sync += [running.eq(forwarded & ~ends_frame), complete.eq(ends_frame)]
-            with m.If(starts):
-                m.d.sync += [
-                    last_column.eq(self.columns - 1),
-                    last_row.eq(self.rows - 1),
-                    self.frame_columns.eq(self.columns),
-                    self.frame_rows.eq(self.rows),
-                ]
-            m.d.sync += [
-                column.eq(Mux(ends_row, 0, Mux(starts, 0, column) + 1)),
-                row.eq(Mux(starts, 0, row) + ends_row),
-            ]
-
-        with m.If(ends_frame):
-            m.d.sync += unsettled.eq(Mux(starts, self.columns, self.frame_columns) + SETTLING)
-        with m.Elif(unsettled != 0):
+        unsettled = Signal(range(-1, self._width + SETTLING), init=-1)
+        with m.If(self.frame_complete):
+            m.d.sync += unsettled.eq(self.frame_columns + (SETTLING - 3))
+        with m.Elif(~unsettled[-1]):
             m.d.sync += unsettled.eq(unsettled - 1)
+        with m.If(ends_frame):
+            m.d.sync += settled.eq(0)
+        with m.Elif(unsettled[-1] & ~self.frame_complete):
+            m.d.sync += settled.eq(1)
+
         m.d.sync += [
             self.o.valid.eq(forwarded),
             self.o.payload.b.eq(pixel.b),
@@ -197,14 +207,48 @@ class Framer(wiring.Component):
             self.frame_started.eq(forwarded & pixel.sof),
             self.frame_complete.eq(ends_frame),
         ]
+        belongs = starts | goes_on
+        cuts = running & start.valid & pixel.sof
         errors = {
             "short_line": belongs & pixel.eol & ~ends_row,
             "long_line": belongs & ~pixel.eol & ends_row,
-            "short_frame": running & pixel.sof & (column == 0),
-            "midline_start": running & pixel.sof & (column != 0),
-            "long_frame": complete & ~pixel.sof,
-            "bad_size": pixel.sof & self.enable & ~size_is_good,
+            "short_frame": cuts & row_due,
+            "midline_start": cuts & ~row_due,
+            "long_frame": complete & start.inner,
+            "bad_size": start.asked & ~starts,
         }
         for name, condition in errors.items():
-            m.d.sync += self.o_error[name].eq(self.i.valid & condition)
+            m.d.sync += self.o_error[name].eq(condition)
         return m
+
+    def _look(self, m):
+        """The pixel a clock later, with what is known of it as a start by then."""
+        columns, rows, pixel = self.columns, self.rows, self.i.payload
+        is_one_column, is_one_row = self._is(columns, 1), self._is(rows, 1)
+        asked = self.i.valid & pixel.sof & self.enable
+        looked = {
+            "valid": self.i.valid,
+            "inner": self.i.valid & ~pixel.sof,
+            "asked": asked,
+            "is_possible": asked
+            & (columns >= self._smallest)
+            & (columns <= self._width)
+            & (rows >= self._smallest)
+            & (rows <= self._height),
+            "is_same": (columns == self.frame_columns) & (rows == self.frame_rows),
+            "is_one_column": is_one_column,
+            "is_two_columns": self._is(columns, 2),
+            "is_one_row": is_one_row,
+            "is_two_rows": self._is(rows, 2),
+            "is_one_pixel": is_one_column & is_one_row,
+        }
+        layout = dict.fromkeys(looked, 1)
+        looked |= {"pixel": pixel, "columns": columns, "rows": rows}
+        layout |= {"pixel": CameraPixel, "columns": bits_for(self._width), "rows": bits_for(self._height)}
+        start = Signal(data.StructLayout(layout), name="start")
+        m.d.sync += [start[name].eq(value) for name, value in looked.items()]
+        return start
+
+    def _is(self, size, number):
+        """Whether a possible size is this number."""
+        return (size == number) if number >= self._smallest else C(0)

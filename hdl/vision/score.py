@@ -90,8 +90,11 @@ class Score(wiring.Component):
             return result
 
         bit, tied, is_bright, level = plane(7), Const(0xFFFF, 16), self.is_bright, []
+        kind = Cat(self.is_even, self.is_long)
         for place in range(7, -1, -1):
-            windows = registers(f"windows_{place}", _windows(bit, is_bright, self.is_even, self.is_long))
+            if place % 2:  # One pair of registers would have too many places to reach.
+                kind = registers(f"kind_{place}", kind)
+            windows = registers(f"windows_{place}", _windows(bit, is_bright, *kind))
             is_bright = registers(f"is_bright_{place}", [is_bright])
             bit, tied = registers(f"bit_{place}", bit), registers(f"tied_{place}", tied) if place < 7 else tied
 

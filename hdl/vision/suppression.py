@@ -152,7 +152,9 @@ class Suppression(wiring.Component):
         with m.If(ends | aborts):
             m.d.sync += [has_centre.eq(0), column.eq(0), in_top.eq(1)]
 
-        m.submodules.row = row = Memory(shape=_Stored, depth=self._width, init=[])
+        # No column is read while it is written: its next reading is at least 4 steps behind the one before, and it is
+        # written 2 clocks after the first of these. So Yosys need not build what shows the old word.
+        m.submodules.row = row = Memory(shape=_Stored, depth=self._width, init=[], attrs={"no_rw_check": 1})
         read, write = row.read_port(), row.write_port()
         m.d.comb += [read.en.eq(step), read.addr.eq(column)]
 
@@ -161,10 +163,9 @@ class Suppression(wiring.Component):
         present, above = Signal(_Stored, reset_less=True), Signal(_Stored, reset_less=True)
         marks = Cat(starts, is_top, is_below)
         present_marks = Signal.like(marks, reset_less=True)
-        m.d.sync += valid.eq(step & has_centre & ~is_done)
+        m.d.sync += [valid.eq(step & has_centre & ~is_done), above.eq(read.data)]
         with m.If(step):
             m.d.sync += [
-                above.eq(read.data),
                 present.best.eq(Mux(is_best & suppress, key, left_best)),
                 present.bright.eq(bright),
                 present.eol.eq(is_last),
@@ -174,35 +175,44 @@ class Suppression(wiring.Component):
         is_first, in_top_row, in_row_below = present_marks
 
         # Both rows are decided against each other. Equal keys: the upper one stays.
-        is_greater, is_item = Signal(), Signal()
+        is_greater, leads_anyhow, leads_if_greater, stays_if_not = (Signal() for _ in range(4))
         decided, is_decided = Signal(_Stored, reset_less=True), Signal()
         item = Signal.like(self.o.payload, reset_less=True)
-        x = Mux(is_first, 0, item.x + 1)
-        m.d.comb += [
+        m.d.sync += [
+            is_decided.eq(valid),
+            decided.eq(present),
             is_greater.eq((present.best > above.best) & suppress),
-            is_item.eq(valid & ~in_top_row & above.leads & ~is_greater),
+            leads_anyhow.eq(leads_row & (in_top_row | ~suppress)),
+            leads_if_greater.eq(leads_row),
+            stays_if_not.eq(valid & ~in_top_row & above.leads),
+        ]
+        m.d.comb += [
             is_done.eq(valid & in_row_below & above.eol),
             write.en.eq(is_decided),
             write.addr.eq(item.x),
             write.data.eq(decided),
-        ]
-        m.d.sync += [
-            is_decided.eq(valid),
-            decided.eq(present),
-            decided.leads.eq(leads_row & (is_greater | in_top_row | ~suppress)),
+            write.data.leads.eq(leads_anyhow | leads_if_greater & is_greater),
         ]
         with m.If(valid):
-            m.d.sync += item.x.eq(x)
+            m.d.sync += item.x.eq(Mux(is_first, 0, item.x + 1))
             with m.If(is_first):
                 m.d.sync += item.y.eq(Mux(in_top_row, 2, item.y + 1))
+            # Nothing else of the memory may be shown: before it is first read that is not even known in simulation.
+            m.d.sync += [
+                item.score.eq(above.best[3:11]),
+                item.arc.eq(above.best[:3] + 9),
+                item.bright.eq(above.bright),
+            ]
 
-        m.d.comb += self.o.payload.eq(item)
-        ending, aborting = Signal(), Signal()
-        m.d.sync += [ending.eq(ends), aborting.eq(aborts), self.o.valid.eq(is_item | ending | aborting)]
+        ending, aborting, is_mark = Signal(), Signal(), Signal()
         m.d.sync += [
-            item.score.eq(above.best[3:11]),
-            item.arc.eq(above.best[:3] + 9),
-            item.bright.eq(above.bright),
+            ending.eq(ends),
+            aborting.eq(aborts),
+            is_mark.eq(ending | aborting),
             item.kind.eq(Mux(ending, ItemKind.END, Mux(aborting, ItemKind.ABORT, ItemKind.ITEM))),
+        ]
+        m.d.comb += [
+            self.o.payload.eq(item),
+            self.o.valid.eq(stays_if_not & ~is_greater | is_mark),
         ]
         return m

@@ -30,6 +30,6 @@ def frame_times(first, last, taken, clocks, *, bits=32):
     published = np.searchsorted(taken, clock)  # how many, before this clock
 
     def told(events):
-        return np.concatenate([[1], events])[published] - 1 & (1 << bits) - 1
+        return np.concatenate([[2], events])[published] - 2 & (1 << bits) - 1
 
     return {"time": clock - 1 & (1 << bits) - 1, "first_pixel": told(starts), "last_pixel": told(ends)}

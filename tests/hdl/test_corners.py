@@ -198,11 +198,11 @@ def test_the_last_pixel_is_enough(engine):
     for idle in (None, random_idle(WIDTH * HEIGHT, 0.3, seed=6)):
         run, items = play(engine, [arcs(4, (HEIGHT, WIDTH))], [{"suppress": 0}], idle=idle)
         pixel = run.accepted["i"]
-        pixel = np.append(pixel, pixel[-1] + 1 + np.arange(22))  # The steps that follow by themselves.
+        pixel = np.append(pixel, pixel[-1] + 1 + np.arange(4))  # The steps that follow by themselves.
         assert run["o"].clock[-1] == run.accepted["i"][-1] + WIDTH + 24
         for (_, x, y, *_), clock in zip(items[:-1], run["o"].clock, strict=False):
             if y + 4 < HEIGHT and x + 4 < WIDTH:
-                assert clock == pixel[(y + 4) * WIDTH + x + 4 + 22] + 3
+                assert clock == pixel[(y + 4) * WIDTH + x + 4 + 4] + 21
             elif y + 4 == HEIGHT:
                 assert clock == run.accepted["i"][-1] + 27 + x
     for shape in ((6, 9), (9, 6), (1, 1)):

@@ -34,7 +34,7 @@ class Bench(wiring.Component):
             counters.clears.eq(Mux(self.i.valid, given.clears, 0)),
             counters.read_number.eq(given.read),
             self.o.valid.eq(1),
-            self.o.payload.data.eq(counters.read_data),
+            self.o.payload.data.eq(Mux(counters.read_is_zero, 0, counters.read_data)),
         ]
         return m
 
@@ -53,26 +53,28 @@ def packed(count, events, clears, reads):
 
 
 def check(lag, seen, events, clears, reads):
-    """Each answer is the model's, and a value that the counter had within ``lag`` clocks and since it was cleared."""
+    """Each answer is the model's, and a value that the counter had within ``lag`` clocks and, when it was read, since
+    it was cleared."""
     clocks, count = events.shape
     model = Model(count, WIDTH)
     value, history = np.zeros(count, int), []  # values before each clock
-    since = np.zeros(count, int)
+    since = was_since = np.zeros(count, int)
     for clock in range(clocks):
         if clock:
             shown = seen[clock]["data"]
             number = reads[clock - 1]
             assert shown == model.data(), clock
-            first = max(since[number], clock - lag, 0)
-            assert shown in {0 if since[number] > clock - lag else -1, *(h[number] for h in history[first:clock])}, (
-                clock
-            )
+            first = max(was_since[number], clock - lag, 0)
+            assert shown in {
+                0 if was_since[number] > clock - lag else -1,
+                *(h[number] for h in history[first:clock]),
+            }, clock
         history.append(value.copy())
         model.step(
             int(events[clock] @ (1 << np.arange(count))), int(clears[clock] @ (1 << np.arange(count))), reads[clock]
         )
         value = np.where(clears[clock], 0, value)
-        since[clears[clock]] = clock + 1
+        was_since, since = since, np.where(clears[clock], clock + 1, since)
         value = np.minimum(value + events[clock], (1 << WIDTH) - 1)
 
 

@@ -11,6 +11,8 @@ from tests.hdl.framer_reference import HEIGHT, SEQUENCES, WIDTH, Said, Stream, f
 from tests.hdl.harness import assert_same, camera_beats, cocotb_run
 
 SETTINGS = ("columns", "rows", "enable")
+#: Clocks from a pixel to what is said of it.
+LATENCY = 2
 #: Good frames of 3 x 2, 3 x 1, 2 x 2 and one pixel.
 GOOD = {(3, 2): "S.|..|", (3, 1): "S.|", (2, 2): "S|.|", (1, 1): "B"}
 
@@ -72,7 +74,7 @@ def at_every_clock(run, name):
 
 
 def check(engine, stream, smallest=1):
-    """The block says exactly what the reference does, one clock after each pixel, and the model does too.
+    """The block says exactly what the reference does, two clocks after each pixel, and the model does too.
 
     Returns what was said, and the run.
     """
@@ -87,7 +89,7 @@ def check(engine, stream, smallest=1):
     assert clock.tolist() == stream.clock.tolist()
     pixels, inputs = fields(run["o"], RgbPixel), fields(coloured(stream), CameraPixel)
     beat = np.array([row[0] for row in said.sent], dtype=np.int64)
-    assert run["o"].clock.tolist() == (clock[beat] + 1).tolist()
+    assert run["o"].clock.tolist() == (clock[beat] + LATENCY).tolist()
     marks = pixels[["first", "eol", "last"]].tolist()
     assert [tuple(map(bool, row)) for row in marks] == [row[1:] for row in said.sent]
     for colour in "rgb":
@@ -97,13 +99,13 @@ def check(engine, stream, smallest=1):
     found = [
         (int(at), kind) for at, row in zip(run["o_error"].clock, strobes, strict=True) for kind in ERRORS if row[kind]
     ]
-    assert sorted(found) == sorted((int(clock[at]) + 1, kind) for at, kind in said.errors)
+    assert sorted(found) == sorted((int(clock[at]) + LATENCY, kind) for at, kind in said.errors)
     for name, mark in (("frame_started", "first"), ("frame_complete", "last")):
         assert run[name].clock.tolist() == run["o"].clock[pixels[mark] == 1].tolist()
 
     columns, rows = np.zeros((2, run.clocks), dtype=np.int64)
     for at, across, down in said.taken:
-        columns[clock[at] + 1 :], rows[clock[at] + 1 :] = across, down
+        columns[clock[at] + LATENCY :], rows[clock[at] + LATENCY :] = across, down
     assert (at_every_clock(run, "frame_columns") == columns).all()
     assert (at_every_clock(run, "frame_rows") == rows).all()
     return said, run
@@ -229,8 +231,8 @@ def test_reset_within_a_frame(engine):
     run = engine.run({"i": frames}, {"columns": 5, "rows": 4, "enable": 1}, reset_at=[7])
     after = run["o"].clock > run.resets[0]
     assert len(run["o_error"]) == 0
-    assert len(run["o"].clock[~after]) == 6
-    assert (run["o"].clock[after] == run.accepted["i"][20:] + 1).all()
+    assert len(run["o"].clock[~after]) == 5
+    assert (run["o"].clock[after] == run.accepted["i"][20:] + LATENCY).all()
 
 
 def test_reset_settles_and_forgets_the_size(engine):
@@ -242,8 +244,8 @@ def test_reset_settles_and_forgets_the_size(engine):
     assert len(run["frame_complete"]) == 2
     reset, start = int(run.resets[0]), int(run.accepted["i"][6])
     columns = at_every_clock(run, "frame_columns")
-    assert set(columns[reset + 1 : start + 1]) == {0}
-    assert set(columns[start + 1 :]) == {2}
+    assert set(columns[reset + 1 : start + LATENCY]) == {0}
+    assert set(columns[start + LATENCY :]) == {2}
 
 
 @pytest.mark.parametrize(
@@ -267,8 +269,8 @@ def test_built_for_one_pixel():
     engine = StreamEngine("framer", 1, 1)
     beats = coloured(Stream.of("BB.SB", (1, 1)))
     run = engine.run({"i": beats}, {"columns": 1, "rows": 1, "enable": 1})
-    assert run["frame_complete"].clock.tolist() == [1, 2, 5]
-    assert run["o_error"].clock.tolist() == [3, 4]
+    assert run["frame_complete"].clock.tolist() == [2, 3, 6]
+    assert run["o_error"].clock.tolist() == [4, 5]
 
 
 @pytest.mark.parametrize("block", ["framer", choosy_framer])

@@ -10,6 +10,7 @@ import pytest
 from systemrdl import RDLCompileError
 
 from hdl.config import SensorConfig
+from hdl.regs.bank import RegisterBank
 from hdl.regs.docs import main, write_docs
 from hdl.regs.map import read_map, sensor_map
 from sim.engine import StreamEngine, fields, pack
@@ -136,6 +137,15 @@ def test_a_large_counter_alone_and_a_window_without_a_name(tmp_path):
     engine = StreamEngine(lambda width, height: BankBench(registers), 16, 16)
     given = {"bus": pack(BUS, address=[0] * 40, read=1, write=0, write_data=0), "strobes": np.ones(40, int)}
     check(engine.run(given), given, BankBench(registers), {"events": (0x0, {"count": (0, 32, "counter", 0)})})
+
+
+def test_large_counters_must_follow_each_other(tmp_path):
+    counter = "reg { field { sw = rw; hw = na; counter; incrsaturate; onwrite = wclr; } count[31:0] = 0; }"
+    (tmp_path / "apart.rdl").write_text(
+        f"addrmap apart {{ default regwidth = 32; {counter} A @ 0x0; {counter} B @ 0x8; }};"
+    )
+    with pytest.raises(ValueError, match="Counters of 32 bits must follow each other"):
+        RegisterBank(registers=read_map(tmp_path / "apart.rdl", "apart"))
 
 
 def test_one_of_several_maps(tmp_path):

@@ -111,7 +111,7 @@ def test_by_hand():
         given[clock] = pack(GIVEN, **dict.fromkeys(GIVEN.members, 0) | beat)[0]
     run = StreamEngine(TimesBench(32), 16, 16).run({"i": given}, drain_clocks=0)
     seen = fields(run["o"], seen_layout(32))
-    expected = [(0, 0)] * 13 + [(2, 9)] * 38 + [(30, 39)] * 29
+    expected = [(0, 0)] * 13 + [(1, 8)] * 38 + [(29, 38)] * 29
     assert list(zip(seen["first_pixel"].tolist(), seen["last_pixel"].tolist(), strict=True)) == expected
     assert seen["time"].tolist() == [(1 << 32) - 1, *range(79)]
 
