@@ -98,7 +98,7 @@ class FrameStore(wiring.Component):
         m = Module()
         # A word that is read while it is written is not counted yet, so Yosys need not build what shows the old one.
         m.submodules.memory = memory = Memory(
-            shape=self._shape, depth=2 * self._depth, init=[], attrs={"no_rw_check": 1}
+            shape=self._shape, depth=2 * self._depth, init=[], attrs=NO_COLLISIONS
         )
         write, read = memory.write_port(), memory.read_port()
         writing = Signal()  # the bank

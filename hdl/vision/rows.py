@@ -57,7 +57,7 @@ class Rows(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         # Yosys need not build what shows the old word in a read that meets a write.
-        m.submodules.memory = memory = Memory(shape=_BITS, depth=self._width, init=[], attrs={"no_rw_check": 1})
+        m.submodules.memory = memory = Memory(shape=_BITS, depth=self._width, init=[], attrs=NO_COLLISIONS)
         read, write = memory.read_port(), memory.write_port()
         kept = Signal(_BITS, reset_less=True)
         m.d.sync += kept.eq(read.data)

@@ -154,7 +154,7 @@ class Suppression(wiring.Component):
 
         # No column is read while it is written: its next reading is at least 4 steps behind the one before, and it is
         # written 2 clocks after the first of these. So Yosys need not build what shows the old word.
-        m.submodules.row = row = Memory(shape=_Stored, depth=self._width, init=[], attrs={"no_rw_check": 1})
+        m.submodules.row = row = Memory(shape=_Stored, depth=self._width, init=[], attrs=NO_COLLISIONS)
         read, write = row.read_port(), row.write_port()
         m.d.comb += [read.en.eq(step), read.addr.eq(column)]
 
