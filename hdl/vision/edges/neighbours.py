@@ -6,13 +6,11 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
+from hdl.memories import NO_COLLISIONS
 from hdl.pixels import GreyPixel, unstalled
 from hdl.vision.edges.shapes import REACH, SETTLED, SMALL
 
 __all__ = ["Neighbours"]
-
-#: Bits of each memory's words.
-PART = 18
 
 
 class Neighbours(wiring.Component):
@@ -62,7 +60,8 @@ class Neighbours(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         pixel = self.i.p
-        bits = 8 * (REACH - 1)
+        m.submodules.rows = rows = Memory(shape=8 * (REACH - 1), depth=self._width, init=[], attrs=NO_COLLISIONS)
+        read, write = rows.read_port(), rows.write_port()
         following, column = Signal.like(self.x), Signal.like(self.x)
         m.d.comb += column.eq(Mux(pixel.first, 0, following))
         with m.If(self.i.valid):
@@ -85,6 +84,7 @@ class Neighbours(wiring.Component):
             ends.eq(last),
             level.eq(pixel.level),
             newest[0].eq(level),
+            Cat(newest[1:]).eq(read.data),
         ]
         m.d.sync += [self.row_start.eq(fetched & starts), self.settled.eq(fetched & (place == SETTLED))]
         for name, least_x, least_y in (("across", SMALL, 2), ("down", 2, SMALL)):
@@ -96,19 +96,12 @@ class Neighbours(wiring.Component):
             m.d.sync += y.eq(Mux(first, 0, y + 1))
         with m.If(valid):
             m.d.sync += [now.eq(older) for now, older in zip(before, [newest[0], *before], strict=False)]
-        # A memory of rows that long and this wide would be put together from parts with a multiplexer behind them.
-        for low in range(0, bits, PART):
-            m.submodules += (rows := Memory(shape=min(PART, bits - low), depth=self._width, init=[]))
-            read, write = rows.read_port(), rows.write_port()
-            m.d.comb += [
-                read.addr.eq(column),
-                read.en.eq(self.i.valid),
-                write.addr.eq(x),
-                write.data.eq(Cat(newest[:-1])[low : low + PART]),
-                write.en.eq(valid),
-            ]
-            m.d.sync += Cat(newest[1:])[low : low + PART].eq(read.data)
         m.d.comb += [
+            read.addr.eq(column),
+            read.en.eq(self.i.valid),
+            write.addr.eq(x),
+            write.data.eq(Cat(newest[:-1])),
+            write.en.eq(valid),
             self.valid.eq(valid),
             self.last.eq(ends),
             self.x.eq(x),

@@ -6,6 +6,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
+from hdl.memories import NO_COLLISIONS
 from hdl.pixels import GreyPixel, unstalled
 
 __all__ = ["Smooth"]
@@ -42,7 +43,7 @@ class Smooth(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         pixel = self.i.p
-        m.submodules.rows = rows = Memory(shape=16, depth=self._width, init=[])
+        m.submodules.rows = rows = Memory(shape=16, depth=self._width, init=[], attrs=NO_COLLISIONS)
         read, write = rows.read_port(), rows.write_port()
         following, column = Signal(bits_for(self._width - 1)), Signal(bits_for(self._width - 1))
         m.d.comb += column.eq(Mux(pixel.first, 0, following))
