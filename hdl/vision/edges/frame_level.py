@@ -91,10 +91,10 @@ class FrameLevel(wiring.Component):
 
         # Quotient of middles and twice the weights, rounded: a bit in two clocks, the highest first.
         rest, divisor = Signal(len(middles) + 1), Signal(len(weights) + BITS)
-        left, fits = Signal(len(rest) + 1), Signal()
+        left, total, fits = Signal(len(rest) + 1), Signal.like(rest, reset_less=True), Signal()
         is_known, kept = Signal(), Signal(BITS, reset_less=True)
         quotient, steps = Signal(BITS, reset_less=True), Signal(range(2 * BITS + 4))
-        m.d.sync += left.eq(rest - divisor)
+        m.d.sync += [left.eq(rest - divisor), total.eq(middles + weights)]
         m.d.comb += fits.eq(~left[-1])
         with m.If(closing != 0):
             m.d.sync += closing.eq(closing - 1)
@@ -111,7 +111,7 @@ class FrameLevel(wiring.Component):
         with m.If(closes):
             m.d.sync += [
                 counts.eq(0),
-                rest.eq(middles + weights),
+                rest.eq(total),
                 divisor.eq(weights << BITS),
                 steps.eq((weights != 0).replicate(len(steps)) & (2 * BITS + 3)),
             ]

@@ -68,6 +68,7 @@ class Neighbours(wiring.Component):
             m.d.sync += following.eq(Mux(pixel.eol, 0, column + 1))
 
         valid, fetched, starts = Signal(), Signal(), Signal(reset_less=True)
+        writes = Signal(reset_less=True)  # as ``valid``, which has many others to tell
         place, x = Signal.like(self.x, reset_less=True), Signal.like(self.x, reset_less=True)
         first, last, ends = Signal(reset_less=True), Signal(reset_less=True), Signal(reset_less=True)
         level, y = Signal(8, reset_less=True), Signal.like(self.y, reset_less=True)
@@ -76,6 +77,7 @@ class Neighbours(wiring.Component):
         m.d.sync += [
             fetched.eq(self.i.valid),
             valid.eq(fetched),
+            writes.eq(fetched),
             place.eq(column),
             starts.eq(column == 0),
             x.eq(place),
@@ -101,7 +103,7 @@ class Neighbours(wiring.Component):
             read.en.eq(self.i.valid),
             write.addr.eq(x),
             write.data.eq(Cat(newest[:-1])),
-            write.en.eq(valid),
+            write.en.eq(writes),
             self.valid.eq(valid),
             self.last.eq(ends),
             self.x.eq(x),

@@ -20,6 +20,8 @@ __all__ = ["FEWEST", "Refiner"]
 
 #: Least points of a side; of those that could be there, half are needed, too.
 FEWEST = 5
+#: Clocks from a marker or a step to what is said of its side.
+SIDE = OUTLINE + 2
 #: A marker's box must be this far from the border for all crossings to be found.
 NEAR = 7
 
@@ -49,7 +51,7 @@ class Refiner(wiring.Component):
     Members
     -------
     valid : In(1), marker : In(marker_layout(width, height)), take : Out(1)
-        What to work off; held until ``take``.
+        What to work off; held until ``take``, and not valid in the clock after it.
     hurry : In(1)
         Too many wait: it leaves as it is, marked as lost.
     columns, rows : In(16)
@@ -107,17 +109,26 @@ class Refiner(wiring.Component):
         right, downwards = Signal(), Signal()
         turn, step, side = Signal(2), Signal(2), Signal(2)
         steep = Signal(4)
-        final, pause = Signal(), Signal(range(max(OUTLINE, DRAIN) + 1))
+        final, pause = Signal(), Signal(range(max(SIDE, DRAIN) + 1))
         quality = Signal.like(o.quality)
         offsets = [Signal.like(o.offset1, name=f"offset{k + 1}") for k in range(4)]
         part_over, failed = Signal(), Signal()
         before = Signal(2)
-        one_steep, other_steep = Array(steep)[before], Array(steep)[step]
-        m.d.comb += [
+        one_steep, other_steep = Signal(reset_less=True), Signal(reset_less=True)
+        is_few, is_fewest = Signal(reset_less=True), Signal(reset_less=True)
+        m.d.sync += [
             right.eq(marker.v1.x < marker.v2.x),
             downwards.eq(marker.v1.y < marker.v2.y),
-            turn.eq(Cat(right == downwards, downwards)),
             side.eq(step + turn),
+            one_steep.eq(Array(steep)[before]),
+            other_steep.eq(Array(steep)[step]),
+            gather.x.eq(Mux(sequencer.at_end, outline.q.x, outline.p.x)),
+            gather.y.eq(Mux(sequencer.at_end, outline.q.y, outline.p.y)),
+            is_few.eq((gather.sums.n < FEWEST) | (gather.sums.n <= outline.reach)),
+            is_fewest.eq(gather.sums.n < quality.points),
+        ]
+        m.d.comb += [
+            turn.eq(Cat(right == downwards, downwards)),
             before.eq(step - 1),
             *(outline.vertices[k].eq(marker[f"v{k + 1}"]) for k in range(4)),
             outline.side.eq(side),
@@ -134,8 +145,6 @@ class Refiner(wiring.Component):
             *(getattr(gather, n).eq(getattr(outline, n)) for n in ("leaving", "first", "span", "middle", "reach")),
             gather.final.eq(final),
             gather.probe.eq(sequencer.busy),
-            gather.x.eq(Mux(sequencer.at_end, outline.q.x, outline.p.x)),
-            gather.y.eq(Mux(sequencer.at_end, outline.q.y, outline.p.y)),
             gather.c.eq(sequencer.c),
             gather.s.eq(sequencer.s),
             sequencer.sums.eq(gather.sums),
@@ -152,48 +161,52 @@ class Refiner(wiring.Component):
             o.quality.clipped.eq(gather.clipped),
         ]
         # Its frame is the one in progress or the one that was complete last; others come too late anyway.
-        near, last = Signal(reset_less=True), {}
+        near, borders = Signal(reset_less=True), Signal(4, reset_less=True)
+        last = {}
         for axis, size in (("x", self.columns), ("y", self.rows)):
-            bits = len(marker.box_max[axis])
-            now, ended = Signal(bits, name=f"now_{axis}"), Signal(bits, name=f"ended_{axis}", reset_less=True)
-            last[axis] = Signal(bits, name=f"last_{axis}")
-            m.d.comb += [now.eq(size - 1 - NEAR), last[axis].eq(Mux(scanner.behind, ended, now))]
+            now, ended, last[axis] = (
+                Signal(len(marker.box_max[axis]), name=f"{name}_{axis}", reset_less=True)
+                for name in ("now", "ended", "last")
+            )
+            m.d.sync += [now.eq(size - 1 - NEAR), last[axis].eq(Mux(scanner.behind, ended, now))]
             with m.If(self.complete):
                 m.d.sync += ended.eq(now)
-        fresh = Signal()
-        with m.If(fresh):
-            m.d.sync += near.eq(
-                (marker.box_min.x < NEAR)
-                | (marker.box_min.y < NEAR)
-                | (marker.box_max.x > last["x"])
-                | (marker.box_max.y > last["y"])
+        m.d.sync += borders.eq(
+            Cat(
+                marker.box_min.x < NEAR,
+                marker.box_min.y < NEAR,
+                marker.box_max.x > last["x"],
+                marker.box_max.y > last["y"],
             )
+        )
         m.d.comb += o.quality.border.eq(near)
 
         with m.FSM(name="refiner"):
             with m.State("IDLE"):
-                m.d.comb += [gather.clear_all.eq(1), fresh.eq(1)]
-                m.d.sync += [step.eq(0), quality.eq(0), quality.points.eq(~0), pause.eq(OUTLINE), final.eq(0)]
+                m.d.comb += gather.clear_all.eq(1)
+                m.d.sync += [step.eq(0), quality.eq(0), quality.points.eq(~0), pause.eq(SIDE), final.eq(0)]
                 m.d.sync += [offset.eq(0) for offset in offsets]
                 with m.If(self.valid):
                     with m.If(marker.kind == ItemKind.ITEM):
+                        m.d.sync += quality.lost.eq(self.hurry)
                         m.next = "SIDE"
-                        with m.If(self.hurry):
-                            m.d.sync += quality.lost.eq(1)
-                            m.next = "EMIT"
                     with m.Elif((marker.kind == ItemKind.ABORT) | scanner.behind):
                         m.d.comb += [
                             self.o.valid.eq(1),
                             self.take.eq(1),
                             scanner.done.eq(marker.kind != ItemKind.ABORT),
                         ]
-                        m.next = "LEAVE"
             with m.State("SIDE"):
                 m.d.sync += pause.eq(pause - 1)
                 with m.If(pause == 0):
                     m.d.sync += steep.bit_select(step, 1).eq(outline.steep)
-                    m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.CHORD)]
+                    with m.If(step == 0):
+                        m.d.sync += near.eq(borders.any())
                     m.next = "CHORD"
+                    with m.If(quality.lost):
+                        m.next = "EMIT"
+                    with m.Else():
+                        m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.CHORD)]
             with m.State("CHORD"), m.If(part_over):
                 m.next = "SCAN"
             with m.State("SCAN"):
@@ -210,9 +223,9 @@ class Refiner(wiring.Component):
                     m.d.sync += quality.lost.eq(1)
                     m.next = "EMIT"
                 with m.Else():
-                    with m.If(gather.sums.n < quality.points):
+                    with m.If(is_fewest):
                         m.d.sync += quality.points.eq(gather.sums.n)
-                    with m.If((gather.sums.n < FEWEST) | (gather.sums.n <= outline.reach)):
+                    with m.If(is_few):
                         m.d.sync += quality.few.eq(1)
                         m.next = "EMIT"
                     with m.Else():
@@ -226,11 +239,13 @@ class Refiner(wiring.Component):
                     m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.ENDS)]
                     m.next = "ENDS"
             with m.State("ENDS"), m.If(part_over):
-                m.d.sync += [step.eq(step + 1), pause.eq(OUTLINE), final.eq(0)]
+                m.d.sync += [step.eq(step + 1), pause.eq(SIDE), final.eq(0)]
                 m.next = "SIDE"
                 with m.If(step == 3):
                     m.next = "VERTEX"
             with m.State("VERTEX"):
+                m.next = "LINES"
+            with m.State("LINES"):  # which two they are is known by now
                 m.d.comb += [
                     sequencer.go.eq(1),
                     sequencer.part.eq(Mux(one_steep == other_steep, Part.ALIKE, Part.CROSS)),
@@ -261,8 +276,6 @@ class Refiner(wiring.Component):
                 m.next = "EMIT"
             with m.State("EMIT"):
                 m.d.comb += [self.o.valid.eq(1), self.take.eq(1)]
-                m.next = "LEAVE"
-            with m.State("LEAVE"):  # until the next one is shown
                 m.next = "IDLE"
         m.d.comb += failed.eq(sequencer.overflow)
         return m

@@ -1,0 +1,8 @@
+"""What synthesis is told about memories."""
+
+__all__ = ["NO_COLLISIONS"]
+
+#: Attributes of a memory of which no read that meets a write to the same address in the same clock is used, so that its
+#: outcome does not matter. ECP5 block RAM returns anything then; without this promise Yosys builds a bypass behind it,
+#: and the data can no longer be registered in the block RAM itself. ``tests/hdl/test_collisions.py`` has garbage read.
+NO_COLLISIONS = {"no_rw_check": 1}
