@@ -30,7 +30,7 @@ class Edges(wiring.Component):
     (x, y) + ACROSS, between (x, y) and (x, y + 1) with pixel (x, y) + DOWN (:mod:`hdl.vision.edges.shapes`). It carries
     that pixel's place. The 5 pixels along the border have none.
 
-    Throughput: a pixel a clock, and a crossing of either kind with each. Latency: 14 clocks from that pixel.
+    Throughput: a pixel a clock, and a crossing of either kind with each. Latency: 16 clocks from that pixel.
     Memory: 11 rows of levels (56 kbit at 640 pixels), two tables of 256 reciprocals. Three multipliers.
 
     Parameters

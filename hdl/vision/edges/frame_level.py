@@ -80,11 +80,12 @@ class FrameLevel(wiring.Component):
         ]
         with m.If(adds):
             m.d.sync += [weights.eq(weights + weight), middles.eq(middles + product)]
+        last = Signal(len(self.rows), reset_less=True)
         begins, is_first, is_last, starts = (Signal(name=n) for n in ("begins", "is_first", "is_last", "starts"))
         m.d.sync += [
             begins.eq(self.row_start),
             is_first.eq(self.row == FIRST_ROW),
-            is_last.eq(self.row + LAST_ROWS == self.rows),
+            *(last.eq(self.rows - LAST_ROWS), is_last.eq(self.row == last)),
             starts.eq(begins & is_first),
             closes.eq((closing == 1) & ~starts),
         ]
@@ -92,20 +93,21 @@ class FrameLevel(wiring.Component):
         # Quotient of middles and twice the weights, rounded: a bit in two clocks, the highest first.
         rest, divisor = Signal(len(middles) + 1), Signal(len(weights) + BITS)
         left, total, fits = Signal(len(rest) + 1), Signal.like(rest, reset_less=True), Signal()
-        is_known, kept = Signal(), Signal(BITS, reset_less=True)
+        is_any, is_step, is_known, kept = Signal(), Signal(), Signal(), Signal(BITS, reset_less=True)
         quotient, steps = Signal(BITS, reset_less=True), Signal(range(2 * BITS + 4))
-        m.d.sync += [left.eq(rest - divisor), total.eq(middles + weights)]
+        m.d.sync += [left.eq(rest - divisor), total.eq(middles + weights), is_any.eq(weights != 0)]
         m.d.comb += fits.eq(~left[-1])
         with m.If(closing != 0):
             m.d.sync += closing.eq(closing - 1)
         with m.If(begins & counts & is_last):
             m.d.sync += closing.eq(DRAIN)
+        m.d.sync += is_step.eq(steps[0] & (steps[1:] > 1))
+        with m.If(is_step):
+            m.d.sync += [divisor.eq(divisor >> 1), quotient.eq(Cat(fits, quotient))]
+            with m.If(fits):
+                m.d.sync += rest.eq(left)
         with m.If(steps[1:] > 1):
             m.d.sync += steps.eq(steps - 1)
-            with m.If(~steps[0]):
-                m.d.sync += [divisor.eq(divisor >> 1), quotient.eq(Cat(fits, quotient))]
-                with m.If(fits):
-                    m.d.sync += rest.eq(left)
         with m.Elif(steps[1]):
             m.d.sync += [steps.eq(0), kept.eq(quotient), is_known.eq(1)]
         with m.If(closes):
@@ -113,7 +115,7 @@ class FrameLevel(wiring.Component):
                 counts.eq(0),
                 rest.eq(total),
                 divisor.eq(weights << BITS),
-                steps.eq((weights != 0).replicate(len(steps)) & (2 * BITS + 3)),
+                steps.eq(is_any.replicate(len(steps)) & (2 * BITS + 3)),
             ]
         with m.If(starts):
             m.d.sync += [counts.eq(1), closing.eq(0), weights.eq(0), middles.eq(0), adds.eq(0)]

@@ -9,7 +9,7 @@ from hdl.vision.edges.shapes import PART_BITS, REACH
 
 __all__ = ["LATENCY", "Locator"]
 
-LATENCY = 8
+LATENCY = 9
 
 
 def _least(one, other):
@@ -25,9 +25,9 @@ class Locator(wiring.Component):
 
     ::
 
-        clock    0        1            2          3           4          5              6             7           8
-        pixels -> which is -> ordered -> least,   -> low,  -> low + high, -> beyond,    -> factors -> product -> part
-                  dark        by light   greatest    high     contrast       reciprocal    found
+        clock 0        1           2          3           4         5             6             7         8         9
+        pixels -> which is -> ordered -> least,   -> low,  -> low + high, -> beyond,   -> factors -> product -> part
+                  dark        by light   greatest    high     contrast       reciprocal             found
                                          of 2 of 3   step     -> reciprocals ->
 
     Throughput: a pair a clock. Latency: :data:`LATENCY` clocks. One multiplier. Memory: 256 reciprocals of 15 bits.
@@ -68,8 +68,8 @@ class Locator(wiring.Component):
 
         # 1: which side is dark
         levels, was = self.pixels, stage("was0 was1 was2 was3 was4 was5 was6 was7 was8 was9")
-        rises = [Signal(name=f"rises{k}", reset_less=True) for k in range(1, LATENCY + 1)]
-        going = [Signal(name=f"going{k}") for k in range(1, LATENCY + 1)]
+        rises = [Signal(name=f"rises{k}", reset_less=True) for k in range(1, LATENCY)]
+        going = [Signal(name=f"going{k}") for k in range(1, LATENCY)]
         dark_before, dark_after = stage("dark_before dark_after", 1)
         m.d.sync += [
             *(now.eq(older) for now, older in zip(was, levels, strict=True)),
@@ -81,7 +81,7 @@ class Locator(wiring.Component):
         ]
         # 2: the dark plateau, the light one, the dark pixel of the pair, the light one
         before, after, darker_before = [was[k] for k in (9, 8, 7)], [was[k] for k in (2, 1, 0)], rises[0]
-        parts = [Signal(name=f"parts{k}", reset_less=True) for k in range(2, LATENCY + 1)]
+        parts = [Signal(name=f"parts{k}", reset_less=True) for k in range(2, LATENCY)]
         dark, light = stage("dark0 dark1 dark2"), stage("light0 light1 light2")
         darker2, lighter2 = stage("darker2 lighter2")
         m.d.sync += [
@@ -155,9 +155,10 @@ class Locator(wiring.Component):
         # 8
         product = Signal(unsigned(24), reset_less=True)
         m.d.sync += [product.eq(factors[0] * factors[1]), going[7].eq(going[6])]
+        # 9
         part = Signal(PART_BITS)
-        m.d.comb += [
-            part.eq(product[15 - PART_BITS : 15] | product[15].replicate(PART_BITS)),
+        m.d.comb += part.eq(product[15 - PART_BITS : 15] | product[15].replicate(PART_BITS))
+        m.d.sync += [
             self.part.eq(part ^ (~rises[-1]).replicate(PART_BITS)),
             self.found.eq(going[-1] & parts[-1]),
             self.edge.eq(going[-1]),

@@ -14,6 +14,8 @@ __all__ = ["BLOCK_BITS", "EdgeRing"]
 
 #: The start of every eighth row is remembered.
 BLOCK_BITS = 3
+#: Bits of a block memory.
+BLOCK_MEMORY = 1 << 14
 
 
 class EdgeRing(wiring.Component):
@@ -87,27 +89,34 @@ class EdgeRing(wiring.Component):
         for name in ("across", "down"):
             stream = getattr(self, f"i_{name}")
             count = Signal.like(self.written, name=f"count_{name}")
-            m.submodules[name] = ring = Memory(shape=self._point, depth=self._depth, init=[], attrs=NO_COLLISIONS)
             m.submodules[f"{name}_blocks"] = starts = Memory(
-                shape=len(count), depth=self._blocks, init=[], attrs=NO_COLLISIONS
+                shape=len(count), depth=self._blocks, init=[], attrs=NO_COLLISIONS | {"ram_style": "block"}
             )
-            write, read = ring.write_port(), ring.read_port()
             note, look = starts.write_port(), starts.read_port()
             point = Signal(self._point, name=f"point_{name}", reset_less=True)
             start = Signal(len(count), name=f"start_{name}", reset_less=True)
             with m.If(stream.valid):
                 m.d.sync += count.eq(count + 1)
+            # In parts as wide as one block memory of this depth: else some would share a bit, and choose behind it.
+            part = max(1, BLOCK_MEMORY // self._depth)
+            for low in range(0, len(point.as_value()), part):
+                bits = stream.payload.as_value()[low : low + part]
+                m.submodules += (ring := Memory(shape=len(bits), depth=self._depth, init=[], attrs=NO_COLLISIONS))
+                write, read = ring.write_port(), ring.read_port()
+                m.d.comb += [
+                    write.addr.eq(count[: len(write.addr)]),
+                    write.data.eq(bits),
+                    write.en.eq(stream.valid),
+                    read.addr.eq(self.number[: len(read.addr)]),
+                ]
+                m.d.sync += point.as_value()[low : low + part].eq(read.data)
             m.d.comb += [
-                write.addr.eq(count[: len(write.addr)]),
-                write.data.eq(stream.payload),
-                write.en.eq(stream.valid),
-                read.addr.eq(self.number[: len(read.addr)]),
                 note.addr.eq(begun),
                 note.data.eq(count),
                 note.en.eq(begins),
                 look.addr.eq(self.block),
             ]
-            m.d.sync += [point.eq(read.data), start.eq(look.data)]
+            m.d.sync += start.eq(look.data)
             counts.append(count)
             data.append(point)
             blocks.append(start)
