@@ -12,7 +12,7 @@ __all__ = ["Queue"]
 class Queue(wiring.Component):
     """Words wait in a block memory; the oldest is shown behind the memory's output register.
 
-    Throughput: in a word a clock, out a word in 3 clocks. Latency: 4 clocks.
+    Throughput: in a word a clock, out a word in 4 clocks. Latency: 3 clocks.
 
     Parameters
     ----------
@@ -46,12 +46,12 @@ class Queue(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.words = words = memory.Memory(
-            shape=self._width, depth=self._depth, init=[], attrs=NO_COLLISIONS
+            shape=self._width, depth=self._depth, init=[], attrs=NO_COLLISIONS | {"ram_style": "block"}
         )
         write, read = words.write_port(), words.read_port()
         newest, oldest = Signal(range(self._depth)), Signal(range(self._depth))
         kept = Signal(self._width, reset_less=True)
-        comes, leaves, is_read = Signal(), Signal(), Signal()
+        comes, leaves, has_left, is_read = (Signal(name=n) for n in ("comes", "leaves", "has_left", "is_read"))
         m.d.comb += [
             self.w_rdy.eq(~self.level[-1]),
             comes.eq(self.w_en & self.w_rdy),
@@ -66,12 +66,13 @@ class Queue(wiring.Component):
         m.d.sync += [
             kept.eq(read.data),
             newest.eq(newest + comes),
-            oldest.eq(oldest + leaves),
-            is_read.eq((self.level != 0) & ~leaves),
+            has_left.eq(leaves),
+            oldest.eq(oldest + has_left),
+            is_read.eq((self.level != 0) & ~leaves & ~has_left),
             self.r_rdy.eq(is_read & ~leaves),
         ]
-        with m.If(comes & ~leaves):
+        with m.If(comes & ~has_left):
             m.d.sync += self.level.eq(self.level + 1)
-        with m.Elif(leaves & ~comes):
+        with m.Elif(has_left & ~comes):
             m.d.sync += self.level.eq(self.level - 1)
         return m

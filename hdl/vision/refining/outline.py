@@ -11,7 +11,7 @@ from hdl.vision.refining.shapes import along_bits
 __all__ = ["OUTLINE", "Outline"]
 
 #: Clocks from a side's number to what is said of it.
-OUTLINE = 6
+OUTLINE = 7
 #: Rows above a side, and below a flat one, in which its crossings may be.
 ABOVE, BELOW = 4, 1
 
@@ -21,10 +21,10 @@ class Outline(wiring.Component):
 
     ::
 
-        clock 0      1         2          3            4        5              6
-        vertices -> p, q -> q - p -> its size -> steep -> length, ... -> rows, middle, reach
+        clock 0      1         2          3            4        5              6                7
+        vertices -> p, q -> q - p -> its size -> steep -> length, ... -> rows, middle -> reach
 
-    Throughput: a side in 6 clocks, while ``side`` stays.
+    Throughput: a side in 7 clocks, while ``side`` stays.
 
     Members
     -------
@@ -102,11 +102,14 @@ class Outline(wiring.Component):
         ]
         m.d.comb += [self.p.eq(p), self.q.eq(q), self.steep.eq(steep)]
         # 6
+        less = Signal(bits - 4, name="less_reach", reset_less=True)
         m.d.sync += [
             self.first.eq(upper + Mux(steep, ACROSS[1] - ABOVE, DOWN[1] - ABOVE)),
             self.last.eq(lower + Mux(steep, ACROSS[1], DOWN[1] + BELOW)),
             self.span.eq(size["y"] + Mux(steep, ABOVE, ABOVE + BELOW)),
             self.middle.eq((ends[0] + ends[1]) >> 1),
-            self.reach.eq((length >> 1) - (length >> 5) - 2),
+            less.eq((length >> 5) + 2),
         ]
+        # 7
+        m.d.sync += self.reach.eq((length >> 1) - less)
         return m

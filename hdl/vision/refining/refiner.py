@@ -21,7 +21,7 @@ __all__ = ["FEWEST", "Refiner"]
 #: Least points of a side; of those that could be there, half are needed, too.
 FEWEST = 5
 #: Clocks from a marker or a step to what is said of its side.
-SIDE = OUTLINE + 2
+SIDE = OUTLINE + 3
 #: A marker's box must be this far from the border for all crossings to be found.
 NEAR = 7
 
@@ -35,8 +35,8 @@ class Refiner(wiring.Component):
         marker -> outline -> scanner -> ring -> gather -> sums -> sequencer -> line -> gather ...
                                                                       '-> vertices -> o
 
-    Time: about 400 clocks a fit, 8 fits, and twice a clock for each crossing of either kind in the rows of a side, of
-    which a marker has four; 700 clocks for the vertices. It begins above and waits for the rows of each.
+    Time: about 300 clocks a fit and what waits for it, 8 fits, 120 clocks a side beside that, and twice a clock for each
+    crossing of either kind in the rows of a side, of which a marker has four; 800 clocks for the vertices. It begins above and waits for the rows of each.
 
     A marker whose refinement fails leaves with offsets of 0. Marks keep their place; END and SKIP wait until the frame
     is complete here, too.
@@ -112,13 +112,19 @@ class Refiner(wiring.Component):
         final, pause = Signal(), Signal(range(max(SIDE, DRAIN) + 1))
         quality = Signal.like(o.quality)
         offsets = [Signal.like(o.offset1, name=f"offset{k + 1}") for k in range(4)]
-        part_over, failed = Signal(), Signal()
-        before = Signal(2)
+        go, part, part_over, failed = Signal(), Signal(Part), Signal(), Signal()
+        before, is_far, put, clears = Signal(2), Signal(reset_less=True), Signal(), Signal()
+        # Out of the queue's memory it is a long way.
+        near_by = {
+            name: Signal.like(marker[name], name=f"copy_{name}", reset_less=True)
+            for name in ("v1", "v2", "box_min", "box_max")
+        }
         one_steep, other_steep = Signal(reset_less=True), Signal(reset_less=True)
         is_few, is_fewest = Signal(reset_less=True), Signal(reset_less=True)
         m.d.sync += [
-            right.eq(marker.v1.x < marker.v2.x),
-            downwards.eq(marker.v1.y < marker.v2.y),
+            *(copy.eq(marker[name]) for name, copy in near_by.items()),
+            right.eq(near_by["v1"].x < near_by["v2"].x),
+            downwards.eq(near_by["v1"].y < near_by["v2"].y),
             side.eq(step + turn),
             one_steep.eq(Array(steep)[before]),
             other_steep.eq(Array(steep)[step]),
@@ -126,6 +132,11 @@ class Refiner(wiring.Component):
             gather.y.eq(Mux(sequencer.at_end, outline.q.y, outline.p.y)),
             is_few.eq((gather.sums.n < FEWEST) | (gather.sums.n <= outline.reach)),
             is_fewest.eq(gather.sums.n < quality.points),
+            *(sequencer.go.eq(go), sequencer.part.eq(part)),
+            part_over.eq(~(go | sequencer.go | sequencer.busy)),
+            failed.eq(sequencer.overflow),
+            is_far.eq(sequencer.far),
+            *(put.eq(0), clears.eq(0)),
         ]
         m.d.comb += [
             turn.eq(Cat(right == downwards, downwards)),
@@ -154,8 +165,7 @@ class Refiner(wiring.Component):
             sequencer.side.eq(step),
             sequencer.before.eq(before),
             sequencer.swap.eq(~one_steep & other_steep),
-            part_over.eq(~sequencer.busy),
-            *(o[name].eq(marker[name]) for name, _ in marker.shape()),
+                        *(o[name].eq(marker[name]) for name, _ in marker.shape()),
             *(o[f"offset{k + 1}"].eq(offsets[k]) for k in range(4)),
             o.quality.eq(quality),
             o.quality.clipped.eq(gather.clipped),
@@ -173,19 +183,30 @@ class Refiner(wiring.Component):
                 m.d.sync += ended.eq(now)
         m.d.sync += borders.eq(
             Cat(
-                marker.box_min.x < NEAR,
-                marker.box_min.y < NEAR,
-                marker.box_max.x > last["x"],
-                marker.box_max.y > last["y"],
+                near_by["box_min"].x < NEAR,
+                near_by["box_min"].y < NEAR,
+                near_by["box_max"].x > last["x"],
+                near_by["box_max"].y > last["y"],
             )
         )
         m.d.comb += o.quality.border.eq(near)
+
+        # A clock after the vertex is known: its side is still the same.
+        first, second = sequencer.first, sequencer.second
+        for k, offset in enumerate(offsets):
+            with m.If(clears):
+                m.d.sync += offset.eq(0)
+            with m.Elif(put & (side == k)):
+                m.d.sync += [
+                    offset.x.eq(Mux(one_steep & other_steep, second, first)),
+                    offset.y.eq(Mux(one_steep & other_steep, first, second)),
+                ]
 
         with m.FSM(name="refiner"):
             with m.State("IDLE"):
                 m.d.comb += gather.clear_all.eq(1)
                 m.d.sync += [step.eq(0), quality.eq(0), quality.points.eq(~0), pause.eq(SIDE), final.eq(0)]
-                m.d.sync += [offset.eq(0) for offset in offsets]
+                m.d.sync += clears.eq(1)
                 with m.If(self.valid):
                     with m.If(marker.kind == ItemKind.ITEM):
                         m.d.sync += quality.lost.eq(self.hurry)
@@ -206,7 +227,7 @@ class Refiner(wiring.Component):
                     with m.If(quality.lost):
                         m.next = "EMIT"
                     with m.Else():
-                        m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.CHORD)]
+                        m.d.comb += [go.eq(1), part.eq(Part.CHORD)]
             with m.State("CHORD"), m.If(part_over):
                 m.next = "SCAN"
             with m.State("SCAN"):
@@ -229,14 +250,14 @@ class Refiner(wiring.Component):
                         m.d.sync += quality.few.eq(1)
                         m.next = "EMIT"
                     with m.Else():
-                        m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.FIT)]
+                        m.d.comb += [go.eq(1), part.eq(Part.FIT)]
             with m.State("FIT"), m.If(part_over):
                 m.d.sync += final.eq(1)
                 m.next = "SCAN"
                 with m.If(failed):
                     m.next = "ASTRAY"
                 with m.Elif(final):
-                    m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.ENDS)]
+                    m.d.comb += [go.eq(1), part.eq(Part.ENDS)]
                     m.next = "ENDS"
             with m.State("ENDS"), m.If(part_over):
                 m.d.sync += [step.eq(step + 1), pause.eq(SIDE), final.eq(0)]
@@ -247,35 +268,28 @@ class Refiner(wiring.Component):
                 m.next = "LINES"
             with m.State("LINES"):  # which two they are is known by now
                 m.d.comb += [
-                    sequencer.go.eq(1),
-                    sequencer.part.eq(Mux(one_steep == other_steep, Part.ALIKE, Part.CROSS)),
+                    go.eq(1),
+                    part.eq(Mux(one_steep == other_steep, Part.ALIKE, Part.CROSS)),
                 ]
                 m.next = "MEET"
             with m.State("MEET"):
-                first, second = sequencer.first, sequencer.second
                 with m.If(part_over):
-                    for k in range(4):
-                        with m.If(side == k):
-                            m.d.sync += [
-                                offsets[k].x.eq(Mux(one_steep & other_steep, second, first)),
-                                offsets[k].y.eq(Mux(one_steep & other_steep, first, second)),
-                            ]
-                    m.d.sync += step.eq(step + 1)
+                    m.d.sync += [put.eq(1), step.eq(step + 1)]
                     m.next = "VERTEX"
-                    with m.If(failed | sequencer.far):
+                    with m.If(failed | is_far):
                         m.next = "ASTRAY"
                     with m.Elif(step == 3):
-                        m.d.comb += [sequencer.go.eq(1), sequencer.part.eq(Part.RESIDUAL)]
+                        m.d.comb += [go.eq(1), part.eq(Part.RESIDUAL)]
                         m.next = "RESIDUAL"
             with m.State("RESIDUAL"), m.If(part_over):
                 m.d.sync += [quality.residual.eq(sequencer.ratio), quality.refined.eq(1)]
                 m.next = "EMIT"
             with m.State("ASTRAY"):
-                m.d.sync += quality.astray.eq(1)
-                m.d.sync += [offset.eq(0) for offset in offsets]
+                m.d.sync += [quality.astray.eq(1), clears.eq(1)]
+                m.next = "CLEAR"
+            with m.State("CLEAR"):
                 m.next = "EMIT"
             with m.State("EMIT"):
                 m.d.comb += [self.o.valid.eq(1), self.take.eq(1)]
                 m.next = "IDLE"
-        m.d.comb += failed.eq(sequencer.overflow)
         return m

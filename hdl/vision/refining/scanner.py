@@ -38,7 +38,7 @@ class Scanner(wiring.Component):
         Strobe: a complete frame is done with; there is one that is not.
     go : In(1), first, last : In(signed(rows + 2))
         Strobe: read from the row ``first``, which may be negative, to the row ``last``, as rows of the pixels with
-        which crossings were found. Both must have been there for 4 clocks.
+        which crossings were found. Both must have been there for 5 clocks.
     stop : In(1)
         What was read is beyond ``last``.
     block, number : Out, start, written : In
@@ -101,20 +101,23 @@ class Scanner(wiring.Component):
         has_come, is_there = Signal(), Signal()
         number, start = Signal.like(self.number, reset_less=True), Signal.like(self.start, reset_less=True)
         age, is_old = Signal.like(self.number, reset_less=True), Signal(reset_less=True)
+        is_any, next_block = Signal(reset_less=True), Signal(len(reached))
         left, is_left = Signal.like(self.number, reset_less=True), Signal(reset_less=True)
         reading, wait = Signal(READ), Signal(range(READ + AGE))
         m.d.comb += [
-            self.block.eq(self.first[BLOCK_BITS:-1] & (~self.first[-1]).replicate(len(self.first))),
             self.number.eq(number),
             self.valid.eq(reading[-1]),
         ]
         issue = Signal()
         m.d.sync += [
+            self.block.eq(self.first[BLOCK_BITS:-1] & (~self.first[-1]).replicate(len(self.first))),
             has_come.eq(self.behind | (row > self.last)),
             # The next frame, if it has begun, may be one row further.
-            is_there.eq(~self.behind | (behind == 1) & (~begun | ((reached + 1) >> BLOCK_BITS < self.block))),
+            is_there.eq(~self.behind | (behind == 1) & (~begun | (next_block < self.block))),
+            next_block.eq((reached + 1) >> BLOCK_BITS),
             age.eq(self.written - start),
             is_old.eq(age > self._depth),
+            is_any.eq(age != 0),
             reading.eq((reading << 1) | issue),
         ]
         with m.FSM(name="scanner"):
@@ -133,7 +136,7 @@ class Scanner(wiring.Component):
                     m.next = "IDLE"
             with m.State("LOOK"):
                 m.d.comb += self.busy.eq(1)
-                m.d.sync += [number.eq(start), left.eq(age), is_left.eq(age != 0), wait.eq(wait - 1)]
+                m.d.sync += [number.eq(start), left.eq(age), is_left.eq(is_any), wait.eq(wait - 1)]
                 with m.If(wait == 0):
                     m.next = "READ"
                     with m.If(is_old):
