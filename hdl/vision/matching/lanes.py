@@ -112,6 +112,7 @@ class Lanes(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         component, reader = self.component, self.reader
+
         def lane(name, number, value, *, in_result=False):
             m.submodules[name] = words = memory.Memory(
                 shape=value.shape(), depth=self._slots + 1, init=[], attrs=NO_COLLISIONS | {"ram_style": "block"}

@@ -35,8 +35,9 @@ class Refiner(wiring.Component):
         marker -> outline -> scanner -> ring -> gather -> sums -> sequencer -> line -> gather ...
                                                                       '-> vertices -> o
 
-    Time: about 300 clocks a fit and what waits for it, 8 fits, 120 clocks a side beside that, and twice a clock for each
-    crossing of either kind in the rows of a side, of which a marker has four; 800 clocks for the vertices. It begins above and waits for the rows of each.
+    Time: about 300 clocks a fit, 8 fits, and twice a clock for each crossing of either kind in the rows of a side, of
+    which a marker has four; 120 clocks more a side, 800 for the vertices. It begins above and waits for the rows of
+    each.
 
     A marker whose refinement fails leaves with offsets of 0. Marks keep their place; END and SKIP wait until the frame
     is complete here, too.
@@ -165,7 +166,7 @@ class Refiner(wiring.Component):
             sequencer.side.eq(step),
             sequencer.before.eq(before),
             sequencer.swap.eq(~one_steep & other_steep),
-                        *(o[name].eq(marker[name]) for name, _ in marker.shape()),
+            *(o[name].eq(marker[name]) for name, _ in marker.shape()),
             *(o[f"offset{k + 1}"].eq(offsets[k]) for k in range(4)),
             o.quality.eq(quality),
             o.quality.clipped.eq(gather.clipped),
@@ -272,15 +273,14 @@ class Refiner(wiring.Component):
                     part.eq(Mux(one_steep == other_steep, Part.ALIKE, Part.CROSS)),
                 ]
                 m.next = "MEET"
-            with m.State("MEET"):
-                with m.If(part_over):
-                    m.d.sync += [put.eq(1), step.eq(step + 1)]
-                    m.next = "VERTEX"
-                    with m.If(failed | is_far):
-                        m.next = "ASTRAY"
-                    with m.Elif(step == 3):
-                        m.d.comb += [go.eq(1), part.eq(Part.RESIDUAL)]
-                        m.next = "RESIDUAL"
+            with m.State("MEET"), m.If(part_over):
+                m.d.sync += [put.eq(1), step.eq(step + 1)]
+                m.next = "VERTEX"
+                with m.If(failed | is_far):
+                    m.next = "ASTRAY"
+                with m.Elif(step == 3):
+                    m.d.comb += [go.eq(1), part.eq(Part.RESIDUAL)]
+                    m.next = "RESIDUAL"
             with m.State("RESIDUAL"), m.If(part_over):
                 m.d.sync += [quality.residual.eq(sequencer.ratio), quality.refined.eq(1)]
                 m.next = "EMIT"

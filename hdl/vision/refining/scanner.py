@@ -121,10 +121,9 @@ class Scanner(wiring.Component):
             reading.eq((reading << 1) | issue),
         ]
         with m.FSM(name="scanner"):
-            with m.State("IDLE"):
-                with m.If(self.go):
-                    m.d.sync += self.lost.eq(0)
-                    m.next = "WAIT"
+            with m.State("IDLE"), m.If(self.go):
+                m.d.sync += self.lost.eq(0)
+                m.next = "WAIT"
             with m.State("WAIT"):
                 m.d.comb += self.busy.eq(1)
                 # Where the rows start has been read for long, and was there when that was told.
