@@ -38,7 +38,7 @@ class Sensor(wiring.Component):
                                 '-> corners ------------------------------> publisher -> corner store
 
     Throughput: one pixel a clock, any gaps or none. Latency: a marker is readable in the live window 7 rows and
-    some 2,500 clocks after its last row; a frame is published when its last marker is refined.
+    some 3,000 clocks after its last row; a frame is published when its last marker is refined.
 
     Parameters
     ----------

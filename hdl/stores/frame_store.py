@@ -23,6 +23,7 @@ from amaranth.lib import wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
+from hdl.memories import NO_COLLISIONS
 from hdl.pixels import ItemKind
 
 __all__ = ["FrameStore"]
@@ -97,9 +98,7 @@ class FrameStore(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         # A word that is read while it is written is not counted yet, so Yosys need not build what shows the old one.
-        m.submodules.memory = memory = Memory(
-            shape=self._shape, depth=2 * self._depth, init=[], attrs=NO_COLLISIONS
-        )
+        m.submodules.memory = memory = Memory(shape=self._shape, depth=2 * self._depth, init=[], attrs=NO_COLLISIONS)
         write, read = memory.write_port(), memory.read_port()
         writing = Signal()  # the bank
         is_full = self.live_count[-1]

@@ -15,6 +15,8 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
+from hdl.memories import NO_COLLISIONS
+
 __all__ = ["Rows"]
 
 _BITS = 48

@@ -36,6 +36,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
+from hdl.memories import NO_COLLISIONS
 from hdl.pixels import ItemKind, unstalled
 from hdl.vision.corner_test import Position
 from hdl.vision.window import check_size

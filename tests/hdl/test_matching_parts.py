@@ -76,6 +76,7 @@ def test_search():
                     set_all(ctx, dut, valid=0, first=1, value=limit - 1)
                     await ctx.tick()
             set_all(ctx, dut, valid=0)
+            await ctx.tick()
             assert (ctx.get(dut.low), ctx.get(dut.high)) == (values.index(min(values)), values.index(max(values)))
 
     simulate(dut, testbench)
@@ -201,7 +202,7 @@ def test_program(width, height):
     rows = program_of(width, height)
     assert all(0 <= value < 1 << FIELDS[name] for row in rows for name, value in row.items())
     assert 14 * (len(rows) + 6) < 7 * 640
-    assert rows[0] == {"zero_next": 1} and rows[-IN_FLIGHT:] == [{}] * IN_FLIGHT
+    assert rows[0] == {} and rows[-IN_FLIGHT:] == [{}] * IN_FLIGHT
     assert [row.get("report", 0) for row in rows[:-IN_FLIGHT]] == [0] * (len(rows) - IN_FLIGHT - 1) + [1]
 
 

@@ -10,13 +10,10 @@ from hdl.vision.delay import Delay
 from hdl.vision.edges.frame_level import FrameLevel
 from hdl.vision.edges.locator import LATENCY, Locator
 from hdl.vision.edges.neighbours import Neighbours
-from hdl.vision.edges.shapes import SMALL, point_layout
+from hdl.vision.edges.shapes import SETTLED, point_layout
 from hdl.vision.edges.smooth import Smooth
 
 __all__ = ["Edges"]
-
-#: A row is settled when its pixel of this number has come: what was found before it started is out by then.
-SETTLED = 15
 
 
 class Edges(wiring.Component):
@@ -33,7 +30,7 @@ class Edges(wiring.Component):
     (x, y) + ACROSS, between (x, y) and (x, y + 1) with pixel (x, y) + DOWN (:mod:`hdl.vision.edges.shapes`). It carries
     that pixel's place. The 5 pixels along the border have none.
 
-    Throughput: a pixel a clock, and a crossing of either kind with each. Latency: 12 clocks from that pixel.
+    Throughput: a pixel a clock, and a crossing of either kind with each. Latency: 16 clocks from that pixel.
     Memory: 11 rows of levels (56 kbit at 640 pixels), two tables of 256 reciprocals. Three multipliers.
 
     Parameters
@@ -110,9 +107,9 @@ class Edges(wiring.Component):
         # As long as the last pixel's crossings take, and less than a row of the next frame.
         left = Signal(range(SETTLED))
         m.d.comb += [
-            self.row_start.eq(near.valid & (near.x == 0)),
+            self.row_start.eq(near.row_start),
             self.row.eq(near.y),
-            self.settled.eq(near.valid & (near.x == SETTLED)),
+            self.settled.eq(near.settled),
             self.ended.eq(near.valid & near.last),
             self.complete.eq(left == 1),
         ]
@@ -124,11 +121,11 @@ class Edges(wiring.Component):
         m.submodules.place = place = Delay(width=len(near.x) + len(near.y), steps=LATENCY)
         m.d.comb += place.i.eq(Cat(near.x, near.y))
         locators = {}
-        for name, least_x, least_y in (("across", SMALL, 2), ("down", 2, SMALL)):
+        for name in ("across", "down"):
             locator, o = Locator(), getattr(self, f"o_{name}")
             m.submodules[name] = locators[name] = locator
             m.d.comb += [
-                locator.valid.eq(near.valid & (near.x >= least_x) & (near.y >= least_y)),
+                locator.valid.eq(getattr(near, f"has_{name}")),
                 locator.pixels.eq(getattr(near, name)),
                 Cat(locator.threshold, locator.contrast, locator.bright).eq(held),
                 o.valid.eq(locator.found),

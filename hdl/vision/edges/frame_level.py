@@ -28,7 +28,7 @@ class FrameLevel(wiring.Component):
 
         edge, middle, excess -> excess x middle -> sums -> divider -> level
 
-    Throughput: an edge a clock. Latency: 30 clocks from the start of the fourth row before a frame's end. A multiplier.
+    Throughput: an edge a clock. Latency: 37 clocks from the start of the fourth row before a frame's end. A multiplier.
 
     Parameters
     ----------
@@ -71,46 +71,54 @@ class FrameLevel(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         weights, middles = Signal(self._weights), Signal(self._weights + 9)
+        counts, closing, closes = Signal(), Signal(range(DRAIN + 1)), Signal()
+        middle, excess, edge = Signal(9, reset_less=True), Signal(8, reset_less=True), Signal()
         product, weight, adds = Signal(17, reset_less=True), Signal(8, reset_less=True), Signal()
-        counts, closing = Signal(), Signal(range(DRAIN + 1))
-        m.d.sync += [product.eq(self.middle * self.excess), weight.eq(self.excess), adds.eq(self.edge & counts)]
+        m.d.sync += [
+            *(middle.eq(self.middle), excess.eq(self.excess), edge.eq(self.edge)),
+            *(product.eq(middle * excess), weight.eq(excess), adds.eq(edge & counts)),
+        ]
         with m.If(adds):
             m.d.sync += [weights.eq(weights + weight), middles.eq(middles + product)]
-        starts, ends = Signal(), Signal()
-        m.d.comb += [
-            starts.eq(self.row_start & (self.row == FIRST_ROW)),
-            ends.eq(self.row_start & counts & (self.row + LAST_ROWS == self.rows)),
+        last = Signal(len(self.rows), reset_less=True)
+        begins, is_first, is_last, starts = (Signal(name=n) for n in ("begins", "is_first", "is_last", "starts"))
+        m.d.sync += [
+            begins.eq(self.row_start),
+            is_first.eq(self.row == FIRST_ROW),
+            *(last.eq(self.rows - LAST_ROWS), is_last.eq(self.row == last)),
+            starts.eq(begins & is_first),
+            closes.eq((closing == 1) & ~starts),
         ]
 
-        # Quotient of middles and twice the weights, rounded: a bit a clock, the highest first.
+        # Quotient of middles and twice the weights, rounded: a bit in two clocks, the highest first.
         rest, divisor = Signal(len(middles) + 1), Signal(len(weights) + BITS)
-        is_known, kept = Signal(), Signal(BITS, reset_less=True)
-        quotient, steps = Signal(BITS, reset_less=True), Signal(range(BITS + 2))
-        left = Signal(len(rest) + 1)
-        m.d.comb += left.eq(rest - divisor)
+        left, total, fits = Signal(len(rest) + 1), Signal.like(rest, reset_less=True), Signal()
+        is_any, is_step, is_known, kept = Signal(), Signal(), Signal(), Signal(BITS, reset_less=True)
+        quotient, steps = Signal(BITS, reset_less=True), Signal(range(2 * BITS + 4))
+        m.d.sync += [left.eq(rest - divisor), total.eq(middles + weights), is_any.eq(weights != 0)]
+        m.d.comb += fits.eq(~left[-1])
         with m.If(closing != 0):
             m.d.sync += closing.eq(closing - 1)
-            with m.If(closing == 1):
-                m.d.sync += [
-                    counts.eq(0),
-                    rest.eq(middles + weights),
-                    divisor.eq(weights << BITS),
-                    steps.eq((weights != 0).replicate(len(steps)) & (BITS + 1)),
-                ]
-        with m.If(ends):
+        with m.If(begins & counts & is_last):
             m.d.sync += closing.eq(DRAIN)
+        m.d.sync += is_step.eq(steps[0] & (steps[1:] > 1))
+        with m.If(is_step):
+            m.d.sync += [divisor.eq(divisor >> 1), quotient.eq(Cat(fits, quotient))]
+            with m.If(fits):
+                m.d.sync += rest.eq(left)
+        with m.If(steps[1:] > 1):
+            m.d.sync += steps.eq(steps - 1)
+        with m.Elif(steps[1]):
+            m.d.sync += [steps.eq(0), kept.eq(quotient), is_known.eq(1)]
+        with m.If(closes):
+            m.d.sync += [
+                counts.eq(0),
+                rest.eq(total),
+                divisor.eq(weights << BITS),
+                steps.eq(is_any.replicate(len(steps)) & (2 * BITS + 3)),
+            ]
         with m.If(starts):
             m.d.sync += [counts.eq(1), closing.eq(0), weights.eq(0), middles.eq(0), adds.eq(0)]
-        with m.If(steps > 1):
-            m.d.sync += [
-                steps.eq(steps - 1),
-                divisor.eq(divisor >> 1),
-                quotient.eq(Cat(~left[-1], quotient)),
-            ]
-            with m.If(~left[-1]):
-                m.d.sync += rest.eq(left)
-        with m.Elif(steps == 1):
-            m.d.sync += [steps.eq(0), kept.eq(quotient), is_known.eq(1)]
         with m.If(~self.is_automatic):
             m.d.sync += is_known.eq(0)
         m.d.comb += self.level.eq(Mux(self.is_automatic & is_known, kept, self.start))

@@ -9,7 +9,7 @@ from hdl.vision.edges.shapes import PART_BITS, REACH
 
 __all__ = ["LATENCY", "Locator"]
 
-LATENCY = 6
+LATENCY = 9
 
 
 def _least(one, other):
@@ -25,10 +25,10 @@ class Locator(wiring.Component):
 
     ::
 
-        clock    0          1           2         3           4             5           6
-        pixels -> ordered -> least,   -> low,  -> low + high, -> beyond,   -> product, -> part
-                  by light   greatest    high     contrast       reciprocal   found
-                             of 2 of 3   step     -> reciprocals ->
+        clock 0        1           2          3           4         5             6             7         8         9
+        pixels -> which is -> ordered -> least,   -> low,  -> low + high, -> beyond,   -> factors -> product -> part
+                  dark        by light   greatest    high     contrast       reciprocal             found
+                                         of 2 of 3   step     -> reciprocals ->
 
     Throughput: a pair a clock. Latency: :data:`LATENCY` clocks. One multiplier. Memory: 256 reciprocals of 15 bits.
 
@@ -66,101 +66,105 @@ class Locator(wiring.Component):
         def stage(names, bits=8):
             return [Signal(bits, name=name, reset_less=True) for name in names.split()]
 
-        # 1: the dark plateau, the light one, the dark pixel of the pair, the light one.
-        levels = self.pixels
-        before, after = [levels[k] for k in (9, 8, 7)], [levels[k] for k in (2, 1, 0)]
-        dark_before, dark_after, darker_before = Signal(), Signal(), Signal()
-        m.d.comb += [
-            dark_before.eq(before[1] < self.threshold),
-            dark_after.eq(after[1] < self.threshold),
-            darker_before.eq(before[1] < after[1]),  # as ``dark_before``, if only one of them is dark
-        ]
-        rises = [Signal(name=f"rises{k}", reset_less=True) for k in range(LATENCY)]
-        parts = [Signal(name=f"parts{k}", reset_less=True) for k in range(LATENCY)]
-        going = [Signal(name=f"going{k}") for k in range(LATENCY)]
-        dark, light = stage("dark0 dark1 dark2"), stage("light0 light1 light2")
-        darker1, lighter1 = stage("darker1 lighter1")
+        # 1: which side is dark
+        levels, was = self.pixels, stage("was0 was1 was2 was3 was4 was5 was6 was7 was8 was9")
+        rises = [Signal(name=f"rises{k}", reset_less=True) for k in range(1, LATENCY)]
+        going = [Signal(name=f"going{k}") for k in range(1, LATENCY)]
+        dark_before, dark_after = stage("dark_before dark_after", 1)
         m.d.sync += [
-            *(now.eq(older) for now, older in zip(rises, [darker_before, *rises], strict=False)),
+            *(now.eq(older) for now, older in zip(was, levels, strict=True)),
+            *(now.eq(older) for now, older in zip(rises[1:], rises, strict=False)),
+            rises[0].eq(levels[8] < levels[1]),  # as ``dark_before``, if only one of them is dark
+            dark_before.eq(levels[8] < self.threshold),
+            dark_after.eq(levels[1] < self.threshold),
+            going[0].eq(self.valid),
+        ]
+        # 2: the dark plateau, the light one, the dark pixel of the pair, the light one
+        before, after, darker_before = [was[k] for k in (9, 8, 7)], [was[k] for k in (2, 1, 0)], rises[0]
+        parts = [Signal(name=f"parts{k}", reset_less=True) for k in range(2, LATENCY)]
+        dark, light = stage("dark0 dark1 dark2"), stage("light0 light1 light2")
+        darker2, lighter2 = stage("darker2 lighter2")
+        m.d.sync += [
             *(now.eq(older) for now, older in zip(parts, [dark_before ^ dark_after, *parts], strict=False)),
             *(d.eq(Mux(darker_before, b, a)) for d, b, a in zip(dark, before, after, strict=True)),
             *(d.eq(Mux(darker_before, a, b)) for d, b, a in zip(light, before, after, strict=True)),
-            darker1.eq(Mux(darker_before, levels[5], levels[4])),
-            lighter1.eq(Mux(darker_before, levels[4], levels[5])),
-            going[0].eq(self.valid),
-        ]
-        # 2
-        low2, dark2, high2, light2 = stage("low2 dark2_ high2 light2_")
-        darker2, lighter2 = stage("darker2 lighter2")
-        m.d.sync += [
-            low2.eq(_least(dark[0], dark[1])),
-            high2.eq(_greatest(light[0], light[1])),
-            dark2.eq(dark[2]),
-            light2.eq(light[2]),
-            darker2.eq(darker1),
-            lighter2.eq(lighter1),
+            darker2.eq(Mux(darker_before, was[5], was[4])),
+            lighter2.eq(Mux(darker_before, was[4], was[5])),
             going[1].eq(going[0]),
         ]
         # 3
-        low, high, darker3 = stage("low high darker3")
-        step3 = Signal(signed(9), reset_less=True)
+        low3, dark3, high3, light3, darker3, lighter3 = stage("low3 dark3 high3 light3 darker3 lighter3")
         m.d.sync += [
-            low.eq(_least(low2, dark2)),
-            high.eq(_greatest(high2, light2)),
+            low3.eq(_least(dark[0], dark[1])),
+            high3.eq(_greatest(light[0], light[1])),
+            dark3.eq(dark[2]),
+            light3.eq(light[2]),
             darker3.eq(darker2),
-            step3.eq(lighter2 - darker2),
+            lighter3.eq(lighter2),
             going[2].eq(going[1]),
         ]
         # 4
+        low, high, darker4 = stage("low high darker4")
+        step4 = Signal(signed(9), reset_less=True)
+        m.d.sync += [
+            low.eq(_least(low3, dark3)),
+            high.eq(_greatest(high3, light3)),
+            darker4.eq(darker3),
+            step4.eq(lighter3 - darker3),
+            going[3].eq(going[2]),
+        ]
+        # 5
         m.submodules.reciprocals = table = Memory(
             shape=15, depth=256, init=[0, *(((1 << 15) // step + 1) >> 1 for step in range(1, 256))]
         )
         read = table.read_port()
-        middle2 = Signal(9, reset_less=True)
-        middles = [middle2, *(Signal(9, name=f"middle{k}", reset_less=True) for k in (3, 4))]
-        excesses = [Signal(8, name=f"excess{k}", reset_less=True) for k in range(3)]
-        clipped = [Signal(name=f"clipped{k}", reset_less=True) for k in range(3)]
-        darker4, step4 = stage("darker4 step4")
-        difference = Signal(signed(10))
-        m.d.comb += [read.addr.eq(step3[:8]), difference.eq(high - low - self.contrast)]
+        middles = [Signal(9, name=f"middle{k}", reset_less=True) for k in (5, 6, 7, 8)]
+        clipped = [Signal(name=f"clipped{k}", reset_less=True) for k in (5, 6, 7, 8)]
+        spread = Signal(signed(9), reset_less=True)
+        darker5, step5 = stage("darker5 step5")
+        m.d.comb += read.addr.eq(step4[:8])
         m.d.sync += [
-            middle2.eq(low + high),
-            *(now.eq(before) for now, before in zip(middles[1:], middles, strict=False)),
-            *(now.eq(before) for now, before in zip(excesses, [difference[:8], *excesses], strict=False)),
-            going[3].eq(going[2] & ~step3[-1] & ~difference[-1]),
-            clipped[0].eq((low <= 1) | (high >= 252)),
-            clipped[1].eq(clipped[0]),
-            clipped[2].eq(clipped[1]),
-            darker4.eq(darker3),
-            step4.eq(step3),
-        ]
-        # 5
-        beyond = Signal(signed(11), reset_less=True)
-        reciprocal = Signal(15, reset_less=True)
-        (step5,) = stage("step5")
-        m.d.sync += [
-            beyond.eq(middle2 - (darker4 << 1)),
-            reciprocal.eq(read.data),
+            *(now.eq(older) for now, older in zip(middles, [low + high, *middles], strict=False)),
+            *(now.eq(older) for now, older in zip(clipped, [(low <= 1) | (high >= 252), *clipped], strict=False)),
+            spread.eq(high - low),
+            darker5.eq(darker4),
             step5.eq(step4),
-            going[4].eq(going[3]),
+            going[4].eq(going[3] & ~step4[-1]),
         ]
         # 6
-        product = Signal(unsigned(24), reset_less=True)
-        left = Signal(signed(12))
-        m.d.comb += left.eq(beyond - (step5 << 1))
+        beyond, difference = Signal(signed(11), reset_less=True), Signal(signed(10))
+        excesses = [Signal(8, name=f"excess{k}", reset_less=True) for k in (6, 7, 8)]
+        reciprocal = Signal(15, reset_less=True)
+        (step6,) = stage("step6")
+        m.d.comb += difference.eq(spread - self.contrast)
         m.d.sync += [
-            product.eq(beyond[:9] * reciprocal),
-            going[5].eq(going[4] & ~beyond[-1] & left[-1]),
+            *(now.eq(older) for now, older in zip(excesses, [difference[:8], *excesses], strict=False)),
+            beyond.eq(middles[0] - (darker5 << 1)),
+            reciprocal.eq(read.data),
+            step6.eq(step5),
+            going[5].eq(going[4] & ~difference[-1]),
         ]
+        # 7: the factors once more, beside the multiplier
+        factors = Signal(9, name="beyond7", reset_less=True), Signal(15, name="reciprocal7", reset_less=True)
+        left = Signal(signed(12))
+        m.d.comb += left.eq(beyond - (step6 << 1))
+        m.d.sync += [
+            *(factor.eq(value) for factor, value in zip(factors, (beyond[:9], reciprocal), strict=True)),
+            going[6].eq(going[5] & ~beyond[-1] & left[-1]),
+        ]
+        # 8
+        product = Signal(unsigned(24), reset_less=True)
+        m.d.sync += [product.eq(factors[0] * factors[1]), going[7].eq(going[6])]
+        # 9
         part = Signal(PART_BITS)
-        m.d.comb += [
-            part.eq(product[15 - PART_BITS : 15] | product[15].replicate(PART_BITS)),
-            self.part.eq(part ^ (~rises[5]).replicate(PART_BITS)),
-            self.found.eq(going[5] & parts[5]),
-            self.edge.eq(going[5]),
-            self.middle.eq(middles[2]),
-            self.excess.eq(excesses[2]),
-            self.leaving.eq(rises[5] ^ self.bright),
-            self.clipped.eq(clipped[2]),
+        m.d.comb += part.eq(product[15 - PART_BITS : 15] | product[15].replicate(PART_BITS))
+        m.d.sync += [
+            self.part.eq(part ^ (~rises[-1]).replicate(PART_BITS)),
+            self.found.eq(going[-1] & parts[-1]),
+            self.edge.eq(going[-1]),
+            self.middle.eq(middles[-1]),
+            self.excess.eq(excesses[-1]),
+            self.leaving.eq(rises[-1] ^ self.bright),
+            self.clipped.eq(clipped[-1]),
         ]
         return m

@@ -6,8 +6,9 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
+from hdl.memories import NO_COLLISIONS
 from hdl.pixels import GreyPixel, unstalled
-from hdl.vision.edges.shapes import REACH
+from hdl.vision.edges.shapes import REACH, SETTLED, SMALL
 
 __all__ = ["Neighbours"]
 
@@ -31,6 +32,10 @@ class Neighbours(wiring.Component):
     i : In(unstalled(GreyPixel))
     valid, last : Out(1)
         There is a pixel; it is its frame's last.
+    row_start, settled : Out(1)
+        There is a row's first; its number in its row is ``SETTLED``.
+    has_across, has_down : Out(1)
+        There is one, and all of ``across``, or of ``down``, lie in the frame.
     x, y : Out
         Its place.
     across, down : Out(data.ArrayLayout(8, REACH))
@@ -44,6 +49,7 @@ class Neighbours(wiring.Component):
                 "i": In(unstalled(GreyPixel)),
                 "valid": Out(1),
                 "last": Out(1),
+                **dict.fromkeys(("row_start", "settled", "has_across", "has_down"), Out(1)),
                 "x": Out(bits_for(width - 1)),
                 "y": Out(bits_for(height - 1)),
                 "across": Out(data.ArrayLayout(8, REACH)),
@@ -54,14 +60,15 @@ class Neighbours(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         pixel = self.i.p
-        m.submodules.rows = rows = Memory(shape=8 * (REACH - 1), depth=self._width, init=[])
+        m.submodules.rows = rows = Memory(shape=8 * (REACH - 1), depth=self._width, init=[], attrs=NO_COLLISIONS)
         read, write = rows.read_port(), rows.write_port()
         following, column = Signal.like(self.x), Signal.like(self.x)
         m.d.comb += column.eq(Mux(pixel.first, 0, following))
         with m.If(self.i.valid):
             m.d.sync += following.eq(Mux(pixel.eol, 0, column + 1))
 
-        valid, fetched = Signal(), Signal()
+        valid, fetched, starts = Signal(), Signal(), Signal(reset_less=True)
+        writes = Signal(reset_less=True)  # as ``valid``, which has many others to tell
         place, x = Signal.like(self.x, reset_less=True), Signal.like(self.x, reset_less=True)
         first, last, ends = Signal(reset_less=True), Signal(reset_less=True), Signal(reset_less=True)
         level, y = Signal(8, reset_less=True), Signal.like(self.y, reset_less=True)
@@ -70,7 +77,9 @@ class Neighbours(wiring.Component):
         m.d.sync += [
             fetched.eq(self.i.valid),
             valid.eq(fetched),
+            writes.eq(fetched),
             place.eq(column),
+            starts.eq(column == 0),
             x.eq(place),
             first.eq(pixel.first),
             last.eq(pixel.last),
@@ -79,7 +88,13 @@ class Neighbours(wiring.Component):
             newest[0].eq(level),
             Cat(newest[1:]).eq(read.data),
         ]
-        with m.If(fetched & (place == 0)):
+        m.d.sync += [self.row_start.eq(fetched & starts), self.settled.eq(fetched & (place == SETTLED))]
+        for name, least_x, least_y in (("across", SMALL, 2), ("down", 2, SMALL)):
+            is_right, is_low = Signal(name=f"is_right_{name}"), Signal(name=f"is_low_{name}", reset_less=True)
+            # The second is late by a clock, but a row's first pixel is never on the right.
+            m.d.sync += [is_right.eq(fetched & (place >= least_x)), is_low.eq(y >= least_y)]
+            m.d.comb += getattr(self, f"has_{name}").eq(is_right & is_low)
+        with m.If(fetched & starts):
             m.d.sync += y.eq(Mux(first, 0, y + 1))
         with m.If(valid):
             m.d.sync += [now.eq(older) for now, older in zip(before, [newest[0], *before], strict=False)]
@@ -88,7 +103,7 @@ class Neighbours(wiring.Component):
             read.en.eq(self.i.valid),
             write.addr.eq(x),
             write.data.eq(Cat(newest[:-1])),
-            write.en.eq(valid),
+            write.en.eq(writes),
             self.valid.eq(valid),
             self.last.eq(ends),
             self.x.eq(x),

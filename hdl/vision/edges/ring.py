@@ -6,6 +6,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
+from hdl.memories import NO_COLLISIONS
 from hdl.pixels import unstalled
 from hdl.vision.edges.shapes import number_bits, point_layout
 
@@ -13,6 +14,8 @@ __all__ = ["BLOCK_BITS", "EdgeRing"]
 
 #: The start of every eighth row is remembered.
 BLOCK_BITS = 3
+#: Bits of a block memory.
+BLOCK_MEMORY = 1 << 14
 
 
 class EdgeRing(wiring.Component):
@@ -20,9 +23,9 @@ class EdgeRing(wiring.Component):
 
     ::
 
-        crossings across -> ring -> | data |
-        crossings down ---> ring -> | data |
-        numbers of both --> blocks of rows -> | start |
+        crossings across -> ring -> | | -> | data |
+        crossings down ---> ring -> | | -> | data |
+        numbers of both --> blocks of rows -> | | -> | start |
 
     Crossings are numbered modulo a frame's pixels at least, so an age that is more than ``depth`` tells that a crossing
     was overwritten, for a whole frame at least.
@@ -44,11 +47,11 @@ class EdgeRing(wiring.Component):
     down : In(1)
         Which of the two is read.
     block : In, start : Out
-        Number of the first crossing of this block of rows, two clocks later.
+        Number of the first crossing of this block of rows, three clocks later.
     number : In, data : Out(point_layout(width, height))
-        A crossing, two clocks later.
+        A crossing, three clocks later.
     written : Out
-        Number of the crossing that comes next.
+        Number of the crossing that comes next, a clock later.
     """
 
     def __init__(self, *, width, height, depth):
@@ -78,32 +81,48 @@ class EdgeRing(wiring.Component):
         m = Module()
         blocks, data, counts = [], [], []
         # A frame's first row has none itself, but the last of the frame before may still come when it starts.
-        begins = Mux(self.row[BLOCK_BITS:] == 0, self.settled, self.row_start) & (self.row[:BLOCK_BITS] == 0)
+        begins, begun = Signal(), Signal(range(max(self._blocks, 2)), reset_less=True)
+        m.d.sync += [
+            begins.eq(Mux(self.row[BLOCK_BITS:] == 0, self.settled, self.row_start) & (self.row[:BLOCK_BITS] == 0)),
+            begun.eq(self.row >> BLOCK_BITS),
+        ]
         for name in ("across", "down"):
             stream = getattr(self, f"i_{name}")
             count = Signal.like(self.written, name=f"count_{name}")
-            m.submodules[name] = ring = Memory(shape=self._point, depth=self._depth, init=[])
-            m.submodules[f"{name}_blocks"] = starts = Memory(shape=len(count), depth=self._blocks, init=[])
-            write, read = ring.write_port(), ring.read_port()
+            m.submodules[f"{name}_blocks"] = starts = Memory(
+                shape=len(count), depth=self._blocks, init=[], attrs=NO_COLLISIONS | {"ram_style": "block"}
+            )
             note, look = starts.write_port(), starts.read_port()
+            point = Signal(self._point, name=f"point_{name}", reset_less=True)
+            start = Signal(len(count), name=f"start_{name}", reset_less=True)
             with m.If(stream.valid):
                 m.d.sync += count.eq(count + 1)
+            # In parts as wide as one block memory of this depth: else some would share a bit, and choose behind it.
+            part = max(1, BLOCK_MEMORY // self._depth)
+            for low in range(0, len(point.as_value()), part):
+                bits = stream.payload.as_value()[low : low + part]
+                m.submodules += (ring := Memory(shape=len(bits), depth=self._depth, init=[], attrs=NO_COLLISIONS))
+                write, read = ring.write_port(), ring.read_port()
+                m.d.comb += [
+                    write.addr.eq(count[: len(write.addr)]),
+                    write.data.eq(bits),
+                    write.en.eq(stream.valid),
+                    read.addr.eq(self.number[: len(read.addr)]),
+                ]
+                m.d.sync += point.as_value()[low : low + part].eq(read.data)
             m.d.comb += [
-                write.addr.eq(count[: len(write.addr)]),
-                write.data.eq(stream.payload),
-                write.en.eq(stream.valid),
-                read.addr.eq(self.number[: len(read.addr)]),
-                note.addr.eq(self.row >> BLOCK_BITS),
+                note.addr.eq(begun),
                 note.data.eq(count),
                 note.en.eq(begins),
                 look.addr.eq(self.block),
             ]
+            m.d.sync += start.eq(look.data)
             counts.append(count)
-            data.append(read.data)
-            blocks.append(look.data)
+            data.append(point)
+            blocks.append(start)
         m.d.sync += [
             self.data.eq(Mux(self.down, data[1], data[0])),
             self.start.eq(Mux(self.down, blocks[1], blocks[0])),
+            self.written.eq(Mux(self.down, counts[1], counts[0])),
         ]
-        m.d.comb += self.written.eq(Mux(self.down, counts[1], counts[0]))
         return m

@@ -4,7 +4,7 @@ from amaranth import unsigned
 from amaranth.lib import data
 from amaranth.utils import bits_for
 
-__all__ = ["ACROSS", "DOWN", "PART_BITS", "REACH", "SMALL", "number_bits", "point_layout"]
+__all__ = ["ACROSS", "DOWN", "PART_BITS", "REACH", "SETTLED", "SMALL", "number_bits", "point_layout"]
 
 #: A crossing's part of a pixel has this many bits.
 PART_BITS = 6
@@ -17,6 +17,9 @@ ACROSS, DOWN = (6, 1), (1, 6)
 
 #: Pixels before the first that has all neighbours.
 SMALL = 11
+
+#: A row is settled when its pixel of this number has come: what was found before it started is out by then.
+SETTLED = 15
 
 
 def number_bits(width, height, depth):

@@ -6,6 +6,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
+from hdl.memories import NO_COLLISIONS
 from hdl.pixels import GreyPixel, unstalled
 
 __all__ = ["Smooth"]
@@ -19,9 +20,9 @@ class Smooth(wiring.Component):
 
     ::
 
-        pixel -> line buffer, 2 rows -> | 3 levels | -> | column | -> 3 columns -> | level |
+        pixel -> line buffer, 2 rows -> | 3 levels | -> | outer two | -> | column | -> 3 columns -> | level |
 
-    Throughput: a pixel a clock. Latency: 4 clocks. Memory: 2 rows of levels.
+    Throughput: a pixel a clock. Latency: 5 clocks. Memory: 2 rows of levels.
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ class Smooth(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         pixel = self.i.p
-        m.submodules.rows = rows = Memory(shape=16, depth=self._width, init=[])
+        m.submodules.rows = rows = Memory(shape=16, depth=self._width, init=[], attrs=NO_COLLISIONS)
         read, write = rows.read_port(), rows.write_port()
         following, column = Signal(bits_for(self._width - 1)), Signal(bits_for(self._width - 1))
         m.d.comb += column.eq(Mux(pixel.first, 0, following))
@@ -50,11 +51,11 @@ class Smooth(wiring.Component):
             m.d.sync += following.eq(Mux(pixel.eol, 0, column + 1))
 
         # The marks, a step a clock.
-        valid = [Signal(name=f"valid{k}") for k in range(4)]
-        marks = [Signal(3, name=f"marks{k}", reset_less=True) for k in range(4)]
+        valid = [Signal(name=f"valid{k}") for k in range(5)]
+        marks = [Signal(3, name=f"marks{k}", reset_less=True) for k in range(5)]
         columns = [Signal.like(column, name=f"column{k}", reset_less=True) for k in range(2)]
         newest = [Signal(8, name=f"newest{k}", reset_less=True) for k in range(3)]
-        level = Signal(8, reset_less=True)
+        level, outer, inner = Signal(8, reset_less=True), Signal(9, reset_less=True), Signal(8, reset_less=True)
         m.d.sync += [
             *(now.eq(before) for now, before in zip(valid, [self.i.valid, *valid], strict=False)),
             *(now.eq(before) for now, before in zip(marks, [Cat(pixel.first, pixel.eol, pixel.last), *marks],
@@ -63,6 +64,8 @@ class Smooth(wiring.Component):
             level.eq(pixel.level),
             newest[0].eq(level),
             Cat(newest[1:]).eq(read.data),
+            outer.eq(newest[0] + newest[2]),
+            inner.eq(newest[1]),
         ]  # fmt: skip
         sums = [Signal(10, name=f"sum{k}", reset_less=True) for k in range(3)]
         total = Signal(12)
@@ -74,11 +77,11 @@ class Smooth(wiring.Component):
             write.data.eq(Cat(newest[:2])),
             write.en.eq(valid[1]),
             total.eq(sums[0] + (sums[1] << 1) + sums[2] + 8),
-            self.o.valid.eq(valid[3]),
-            Cat(self.o.p.first, self.o.p.eol, self.o.p.last).eq(marks[3]),
+            self.o.valid.eq(valid[-1]),
+            Cat(self.o.p.first, self.o.p.eol, self.o.p.last).eq(marks[-1]),
             self.o.p.level.eq(smoothed),
         ]
-        with m.If(valid[1]):
-            m.d.sync += [sums[0].eq(newest[0] + (newest[1] << 1) + newest[2]), sums[1].eq(sums[0]), sums[2].eq(sums[1])]
+        with m.If(valid[2]):
+            m.d.sync += [sums[0].eq(outer + (inner << 1)), sums[1].eq(sums[0]), sums[2].eq(sums[1])]
         m.d.sync += smoothed.eq(total >> 4)
         return m

@@ -6,6 +6,7 @@ from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
 from hdl.config import DIRECTIONS
+from hdl.memories import NO_COLLISIONS
 from hdl.vision.blob import blob_layout, sum_bits
 from hdl.vision.matching.geometry import POINTS, pixel_layout
 
@@ -38,10 +39,8 @@ class LaneReading(wiring.Signature):
     -------
     place : Out
         The word of the component.
-    lane : Out(Lane), clear : Out(1)
-        What is read. ``clear`` must come a clock after ``zero_next``, ``lane`` must not.
-    zero_next : Out(1)
-        In the next clock word 0 is meant.
+    lane : Out(Lane)
+        What is read.
     word : In(word_layout(width, height))
     area : In
         Area or area of the gaps.
@@ -57,8 +56,6 @@ class LaneReading(wiring.Signature):
             {
                 "place": Out(bits_for(slots)),
                 "lane": Out(5),
-                "clear": Out(1),
-                "zero_next": Out(1),
                 "word": In(word_layout(width, height)),
                 "area": In(area),
                 "gap_sum": In(max(sums)),
@@ -80,17 +77,16 @@ def _or(values):
 class Lanes(wiring.Component):
     """A memory for each field, all written with a component.
 
-    A field is read into its memory's output register and nowhere else: instead of choosing one of them, their outputs
-    are joined by OR, and word 0 of every memory is zero. So a field is shown by reading it, and taken back with
-    ``clear``, which reads word 0 of all.
+    Instead of choosing one of them, their outputs are joined by OR, and word 0 of every memory is zero: that is what is
+    read of all fields that are not asked for. So each memory has an address of its own, with a short way.
 
     ::
 
-        component -> 20 memories -> OR of 4 -> | register | -> OR -> | register | -> word
-                                 -> OR of 2 -> areas, sums
+        lane -> 20 addresses -> | | -> 20 memories -> | | -> | | -> OR of 4 -> | | -> OR -> | | -> word
+                                                                 -> OR of 2 -> areas, sums
 
-    Throughput: a component a clock; a word in two clocks. Latency: from ``lane`` to areas, sums and result 1 clock, to
-    ``word`` 3.
+    Throughput: a component a clock; a word a clock. Latency: from ``lane`` to areas, sums and result 3 clocks, to
+    ``word`` 5.
 
     Memory: the fields of ``slots`` components and a zero.
 
@@ -116,21 +112,24 @@ class Lanes(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         component, reader = self.component, self.reader
-        shows_result = reader.lane == Lane.RESULT
-        where = Signal.like(reader.place, reset_less=True)  # of its own: it has a long way to all the memories
-        m.d.sync += where.eq(Mux(reader.zero_next, 0, reader.place))
 
         def lane(name, number, value, *, in_result=False):
-            m.submodules[name] = words = memory.Memory(shape=value.shape(), depth=self._slots + 1, init=[])
+            m.submodules[name] = words = memory.Memory(
+                shape=value.shape(), depth=self._slots + 1, init=[], attrs=NO_COLLISIONS | {"ram_style": "block"}
+            )
             write, read = words.write_port(), words.read_port()
+            where = Signal.like(reader.place, name=f"where_{name}", reset_less=True)
+            is_read = (reader.lane == number) | (reader.lane == Lane.RESULT if in_result else 0)
+            m.d.sync += where.eq(Mux(is_read, reader.place, 0))
             m.d.comb += [
                 write.addr.eq(self.slot),
                 write.data.eq(value),
                 write.en.eq(self.write),
                 read.addr.eq(where),
-                read.en.eq(reader.clear | (reader.lane == number) | (shows_result if in_result else 0)),
             ]
-            return read.data
+            shown = Signal(value.shape(), name=f"shown_{name}", reset_less=True)
+            m.d.sync += shown.eq(read.data)
+            return shown
 
         word = word_layout(**self._sizes)
         extremes = []

@@ -42,14 +42,14 @@ class Matcher(wiring.Component):
 
     Time: 310 clocks at most for a candidate, 1 for a mark. Marks keep their place in the order.
 
-    Memory: 306 rows of 52 bits, 32 points.
+    Memory: 302 rows of 49 bits, 32 points.
 
     Members
     -------
     valid : In(1), kind : In(ItemKind), place : In
         What to work off; ``place`` is where ``lanes`` has the candidate.
     take : Out(1), taken : In(1)
-        It is done with; held until ``taken``.
+        It is done with; held until ``taken``. Then ``valid`` is clear for three clocks.
     lanes : Out(LaneReading(width, height, slots))
     o : Out(unstalled(marker_layout(width, height)))
 
@@ -77,11 +77,13 @@ class Matcher(wiring.Component):
         words = data.StructLayout({name: unsigned(bits) for name, bits in FIELDS.items()})
         initial = [{"lane": Lane.NONE.value} | row for row in rows]
         m.submodules.program = text = memory.Memory(shape=words, depth=len(rows), init=initial)
-        fetched, row = text.read_port(), Signal(words, init=initial[0], reset_less=True)
+        fetched, row = text.read_port(), Signal(words, reset_less=True)
         counter = Signal(range(len(rows) + 1))
         place = Signal.like(self.place, reset_less=True)
         m.d.comb += [fetched.addr.eq(counter), self.lanes.place.eq(place)]
-        m.d.sync += row.eq(fetched.data)
+        # The point's number is chosen while the rest of the row goes on.
+        step = Signal(words, reset_less=True)
+        m.d.sync += [row.eq(fetched.data), step.eq(row)]
 
         rejected = Signal()
         with m.FSM(name="matcher"):
@@ -95,20 +97,18 @@ class Matcher(wiring.Component):
                         m.d.comb += [self.o.valid.eq(1), self.take.eq(1)]
             with m.State("RUN"):
                 m.d.sync += counter.eq(counter + 1)
-                m.d.comb += self.o.valid.eq(row.report & ~rejected)
-                with m.If(rejected | row.report):
+                m.d.comb += self.o.valid.eq(step.report & ~rejected)
+                with m.If(rejected | step.report):
                     m.d.sync += counter.eq(0)
                     m.next = "LEAVE"
             with m.State("LEAVE"):
                 m.d.comb += self.take.eq(1)
                 with m.If(self.taken):
-                    m.next = "PAUSE"
-            with m.State("PAUSE"):  # The rows that were on their way are over.
-                m.next = "IDLE"
-        self._wire(m, row, rejected)
+                    m.next = "IDLE"  # before another is valid, the rows that were on their way are over
+        self._wire(m, row, step, rejected)
         return m
 
-    def _wire(self, m, row, rejected):
+    def _wire(self, m, row, step, rejected):
         lanes = self.lanes
         sizes = self._sizes
         m.submodules.unfold = unfold = Unfold(**sizes)
@@ -121,43 +121,43 @@ class Matcher(wiring.Component):
         notes, flip, turn = Signal(6, reset_less=True), Signal(reset_less=True), Signal(2)
         found = Mux(row.from_high, search.high, search.low)
         vertex = Signal(2)
+        number = Signal.like(plane.number, reset_less=True)
+        m.d.comb += vertex.eq(row.number[:2] + Mux(row.turned, turn, 0))
+        m.d.sync += number.eq(Mux(row.from_low | row.from_high, found ^ row.number, Cat(vertex, row.number[2:])))
         m.d.comb += [
-            vertex.eq(row.number[:2] + Mux(row.turned, turn, 0)),
-            lanes.lane.eq(row.lane),
-            lanes.clear.eq(row.clear),
-            lanes.zero_next.eq(row.zero_next),
+            plane.number.eq(number),
+            lanes.lane.eq(step.lane),
             unfold.word.eq(lanes.word),
-            *(getattr(unfold, n).eq(row[n]) for n in ("north", "weighs", "twice_y", "upside", "twice_x", "west")),
-            *(getattr(divider, n).eq(row[n]) for n in ("load", "fresh", "load_divisor", "step")),
+            *(getattr(unfold, n).eq(step[n]) for n in ("north", "weighs", "twice_y", "upside", "twice_x", "west")),
+            *(getattr(divider, n).eq(step[n]) for n in ("load", "fresh", "load_divisor", "step")),
             divider.dividend.eq(lanes.gap_sum),
             divider.divisor_in.eq(lanes.area),
-            plane.number.eq(Mux(row.from_low | row.from_high, found ^ row.number, Cat(vertex, row.number[2:]))),
             # One of the two is zero.
             *(plane.given[axis].eq(unfold.point[axis] | divider.quotient) for axis in "xy"),
-            *(getattr(plane, n).eq(row[n]) for n in ("outside", "put", "put_x", "put_y", "line", "pair", "keep")),
-            search.valid.eq(row.search),
-            search.first.eq(row.first),
+            *(getattr(plane, n).eq(step[n]) for n in ("outside", "put", "put_x", "put_y", "line", "pair")),
+            search.valid.eq(step.search),
+            search.first.eq(step.first),
             search.value.eq(plane.product),
             tally.product.eq(plane.product),
             tally.area.eq(divider.divisor),
-            *(getattr(tally, n).eq(row[n]) for n in ("use_area", "subtract", "absolute", "less", "double")),
-            tally.flip.eq(row.flip & flip),
-            tally.valid.eq(row.sum),
-            tally.clear.eq(row.anew),
+            *(getattr(tally, n).eq(step[n]) for n in ("use_area", "subtract", "absolute", "less", "double")),
+            tally.flip.eq(step.flip & flip),
+            tally.valid.eq(step.sum),
+            tally.clear.eq(step.anew),
         ]
 
         # Notes: of AC and of BD, whether the hole's offset is negative, whether it is away, whether it is not on it.
-        with m.If(row.note):
+        with m.If(step.note):
             m.d.sync += notes.eq(Cat(tally.negative, notes))
-        with m.If(row.note_sign):
+        with m.If(step.note_sign):
             m.d.sync += flip.eq(tally.negative)
         off_bd, away_bd, bd_left, off_ac, away_ac, ac_left = (notes[k] for k in range(6))
         by_ac, by_bd = ~off_ac & away_bd, ~off_bd & away_ac
         m.d.comb += [
             rejected.eq(
-                row.reject_negative & tally.negative
-                | row.reject_positive & ~tally.negative
-                | row.verdict & ~(by_ac | by_bd)
+                step.reject_negative & tally.negative
+                | step.reject_positive & ~tally.negative
+                | step.verdict & ~(by_ac | by_bd)
             ),
             turn.eq(Mux(by_ac, Cat(0, bd_left), Cat(1, ~ac_left))),
             self.o.p.kind.eq(self.kind),

@@ -47,8 +47,6 @@ class Plane(wiring.Component):
         2: from now on u is this point's difference from the one before.
     pair : In(1)
         2, with ``line``: the squared distance is wanted.
-    keep : In(1)
-        2: this point is none, the one before stays the one before.
     product : Out(cross_shape(width, height))
     last : list of Out(pixel_layout(width, height))
         2: the point, and the three before it. Without ``pair``.
@@ -64,7 +62,7 @@ class Plane(wiring.Component):
                 "outside": In(1),
                 "given": In(pixel_layout(width, height)),
                 "put": In(number),
-                **dict.fromkeys(("put_x", "put_y", "line", "pair", "keep"), In(1)),
+                **dict.fromkeys(("put_x", "put_y", "line", "pair"), In(1)),
                 "product": Out(cross_shape(width, height)),
                 "last": Out(pixel_layout(width, height)).array(4),
             }
@@ -96,12 +94,9 @@ class Plane(wiring.Component):
         m.d.comb += [difference_x.eq(point.x - v_x), difference_y.eq(v_y - point.y)]
         with m.If(self.line):
             m.d.sync += [u_x.eq(difference_x), u_y.eq(difference_y)]
-        with m.If(~self.keep):
-            m.d.sync += [
-                v_y.eq(Mux(self.pair, difference_x, point.y)),
-                v_x.eq(Mux(self.pair, difference_y, point.x)),
-            ]
         m.d.sync += [
+            v_y.eq(Mux(self.pair, difference_x, point.y)),
+            v_x.eq(Mux(self.pair, difference_y, point.x)),
             products[0].eq(u_x * v_y),
             products[1].eq(u_y * v_x),
             product.eq(products[0] + products[1]),

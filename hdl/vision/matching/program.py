@@ -21,15 +21,18 @@ A, B, C, D, B0, D0, HH, HL, ZERO, ONE, OTHER = range(POINTS, POINTS + 11)
 #: absolute products with (3, 3) and (-3, 3).
 INITIAL_POINTS = [(0, 0)] * ONE + [(3, 3), (-3, 3)] + [(0, 0)] * (32 - OTHER - 1)
 
+#: Rows from the last point of a search to a read of what was found, which is looked at a clock before the row.
+FOUND = 7
+
 #: Rows that are still carried out after the one that ends the program.
-IN_FLIGHT = 2
+IN_FLIGHT = 3
 
 #: Field -> bits; 0 where nothing is said, and :data:`Lane.NONE` of ``lane``.
 FIELDS = {
-    **{"lane": 5, "clear": 1, "zero_next": 1},
+    "lane": 5,
     **dict.fromkeys(("north", "weighs", "twice_y", "upside", "twice_x", "west"), 1),
     **{"number": 5, "from_low": 1, "from_high": 1, "turned": 1, "outside": 1, "put": 5},
-    **dict.fromkeys(("put_x", "put_y", "line", "pair", "keep", "search", "first"), 1),
+    **dict.fromkeys(("put_x", "put_y", "line", "pair", "search", "first"), 1),
     **dict.fromkeys(("use_area", "subtract", "absolute", "flip", "less", "sum", "double", "anew"), 1),
     **dict.fromkeys(("reject_negative", "reject_positive", "note", "note_sign", "verdict", "report"), 1),
     **dict.fromkeys(("load_divisor", "load", "fresh", "step"), 1),
@@ -116,22 +119,15 @@ class _Rows:
         self.read(start)
         self.read(end, line=True)
 
-    def clear(self, row):
-        """Nothing of the candidate is shown after this row."""
-        self.set(row - 1, zero_next=1)
-        self.set(row, clear=1)
-
     def fetch(self, row, lane):
         """Field ``lane`` of the candidate is shown in the next row alone."""
-        self.set(row, lane=lane)
-        self.clear(row + 1)
+        self.set(row - 2, lane=lane)
         return row + 1
 
 
 def program(dividend_bits):
     """Rows, each a dict of fields."""
     rows = _Rows()
-    rows.clear(1)
     rows.set(2, load=1, fresh=1)  # nothing of the candidate before is left
     x_known = _quadrilateral(rows, dividend_bits)
     _areas_of_triangles(rows)
@@ -148,7 +144,7 @@ def _quadrilateral(rows, dividend_bits):
     A and C are the opposite extremes farthest apart, B and D the farthest from AC; A, C from BD; B, D from AC."""
     order = [k + half for k in range(POINTS // 2) for half in (0, POINTS // 2)]
     for index, k in enumerate(order):
-        row = rows.fetch(2 + 2 * index, k) - 1
+        row = rows.fetch(3 + index, k) - 1
         first, second = unfolding(k)
         rows.set(row + 3, **first)
         rows.set(row + 4, **second)
@@ -156,11 +152,10 @@ def _quadrilateral(rows, dividend_bits):
         is_second = index % 2
         searched = None if not is_second else "first" if index == 1 else "next"
         rows.take(put=k, line=is_second, pair=is_second, search=searched)
-        rows.set(rows.now + 2, keep=1)
-    rows.wait(rows.now + 5)
+    rows.wait(rows.now + FOUND)
 
     # Meanwhile, the x of the hole's centre, in two parts.
-    start = 2 + 2 * POINTS
+    start = 3 + POINTS
     rows.set(rows.fetch(start, Lane.GAP_AREA), load_divisor=1)
     x_known = _divide(rows, rows.fetch(start + 2, Lane.GAP_SUM_X), dividend_bits)
 
@@ -179,7 +174,7 @@ def _search(rows, known, part):
     """The lowest and highest of all extremes. In the pause after them ``part`` of the hole's centre is kept."""
     for k in range(POINTS):
         rows.read(k, search="next" if k else "first")
-    ready = rows.now + 5
+    ready = rows.now + FOUND
     if part is not None:
         rows.wait(known - 1)
         if rows.now >= ready:
@@ -314,7 +309,7 @@ def _offsets(rows):
         row = _add_area(rows, +1, double=True)
         rows.set(row, note=1)
     rows.set(row + 1, verdict=1)
-    rows.wait(row + 1)
+    rows.wait(row + 2)
     for vertex in (A, B, C, D):
         last = rows.read(vertex, turned=True)
     rows.set(rows.fetch(last + 1, Lane.RESULT), report=1)

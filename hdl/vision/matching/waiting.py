@@ -2,11 +2,11 @@
 
 from amaranth import Module, Mux, Signal, unsigned
 from amaranth.lib import data, memory, wiring
-from amaranth.lib.fifo import SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
 from hdl.pixels import ItemKind
+from hdl.vision.queue import Queue
 
 __all__ = ["VERDICT", "Waiting", "slots"]
 
@@ -16,7 +16,7 @@ VERDICT = 3
 
 def slots(depth):
     """Numbers of places for components, from 1: half of ``depth`` for candidates, and those without a verdict yet."""
-    return depth // 2 + VERDICT + 5
+    return depth // 2 + VERDICT + 6
 
 
 class Waiting(wiring.Component):
@@ -88,29 +88,33 @@ class Waiting(wiring.Component):
 
         # On the first way around the ring a place is its own number, so that a reset frees them all.
         head, tail = (Signal.like(self.slot, init=first, name=name) for name, first in (("head", 2), ("tail", 1)))
-        head_next = Signal.like(head)
+        following, moved = Signal.like(head, init=3), Signal()  # the place after the head; the head has moved there
         first_round = Signal(init=1)
         m.submodules.ring = ring = memory.Memory(shape=self.slot.shape(), depth=count + 1, init=[])
-        write, read = ring.write_port(), ring.read_port()
+        write, read, read_following = ring.write_port(), ring.read_port(), ring.read_port()
 
         def after(pointer):
             return Mux(pointer == count, 1, pointer + 1)
 
-        m.d.comb += [head_next.eq(head), read.addr.eq(head_next)]
+        m.d.comb += [read.addr.eq(head), read_following.addr.eq(following)]
+        m.d.sync += moved.eq(self.component)
         with m.If(self.component):
-            m.d.comb += head_next.eq(after(head))
-            m.d.sync += [head.eq(head_next), self.slot.eq(Mux(first_round, head, read.data))]
+            oldest_free = Mux(moved, read_following.data, read.data)
+            m.d.sync += [
+                head.eq(following),
+                following.eq(after(following)),
+                self.slot.eq(Mux(first_round, head, oldest_free)),
+            ]
             with m.If(head == count):
                 m.d.sync += first_round.eq(0)
         given = [Signal.like(self.slot, name=f"slot{k}", init=0, reset_less=True) for k in range(VERDICT)]
         for stage, previous in zip(given, [self.slot, *given], strict=False):
             m.d.sync += stage.eq(previous)
 
-        m.submodules.order = order = SyncFIFOBuffered(width=entry.size, depth=2 * self._depth)
+        m.submodules.order = order = Queue(width=entry.size, depth=2 * self._depth)
         word, oldest = Signal(entry), Signal(entry)
-        queued = Signal(range(half + 1))
+        queued, is_full = Signal(range(half + 1)), Signal()
         joins, marks, voids, returned = Signal(), Signal(), Signal(), Signal()
-        is_full = queued == half
         m.d.comb += [
             joins.eq(self.wanted & ~is_full),
             self.dropped.eq(self.wanted & is_full),
@@ -130,6 +134,9 @@ class Waiting(wiring.Component):
             self.taken.eq(self.take & (~returned | (self.kind != ItemKind.ITEM))),
             order.r_en.eq(self.taken),
             write.addr.eq(tail),
+        ]
+        # A place is free a clock later.
+        m.d.sync += [
             write.data.eq(Mux(returned, given[-1], self.place)),
             write.en.eq(returned | self.taken & (self.kind == ItemKind.ITEM)),
         ]
@@ -139,7 +146,7 @@ class Waiting(wiring.Component):
             m.d.sync += tail.eq(after(tail))
         leaves = self.taken & (self.kind == ItemKind.ITEM)
         with m.If(joins & ~leaves):
-            m.d.sync += queued.eq(queued + 1)
+            m.d.sync += [queued.eq(queued + 1), is_full.eq(queued == half - 1)]
         with m.Elif(leaves & ~joins):
-            m.d.sync += queued.eq(queued - 1)
+            m.d.sync += [queued.eq(queued - 1), is_full.eq(0)]
         return m

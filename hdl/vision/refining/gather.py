@@ -171,7 +171,10 @@ class Gather(wiring.Component):
         ]
         # 6
         sums = self.sums
-        with m.If(counts5 & ~sums.n.all()):
+        is_full, adds = Signal(), Signal()
+        m.d.comb += adds.eq(counts5 & ~is_full)
+        m.d.sync += is_full.eq(~self.clear & sums.n[1:].all() & (sums.n[0] | adds))
+        with m.If(adds):
             m.d.sync += [
                 sums.n.eq(sums.n + 1),
                 sums.u.eq(sums.u + u5),

@@ -11,7 +11,7 @@ from hdl.vision.refining.shapes import along_bits
 __all__ = ["OUTLINE", "Outline"]
 
 #: Clocks from a side's number to what is said of it.
-OUTLINE = 5
+OUTLINE = 7
 #: Rows above a side, and below a flat one, in which its crossings may be.
 ABOVE, BELOW = 4, 1
 
@@ -21,10 +21,10 @@ class Outline(wiring.Component):
 
     ::
 
-        clock 0      1         2          3            4       5
-        vertices -> p, q -> q - p -> its size -> steep -> rows, middle, reach
+        clock 0      1         2          3            4        5              6                7
+        vertices -> p, q -> q - p -> its size -> steep -> length, ... -> rows, middle -> reach
 
-    Throughput: a side in 5 clocks, while ``side`` stays.
+    Throughput: a side in 7 clocks, while ``side`` stays.
 
     Members
     -------
@@ -89,23 +89,27 @@ class Outline(wiring.Component):
         m.d.comb += less.eq(size["y"] - size["x"])
         m.d.sync += steep.eq(~less[-1])
         # 5
-        length, upper, lower = Signal(bits), Signal(bits), Signal(bits)
-        m.d.comb += [
+        length, upper, lower = (Signal(bits, name=n, reset_less=True) for n in ("length", "upper", "lower"))
+        ends = [Signal(bits, name=n, reset_less=True) for n in ("start", "end")]
+        m.d.sync += [
             length.eq(Mux(steep, size["y"], size["x"])),
             upper.eq(Mux(way["y"][-1], q.y, p.y)),
             lower.eq(Mux(way["y"][-1], p.y, q.y)),
+            *(end.eq(Mux(steep, vertex.y, vertex.x)) for end, vertex in zip(ends, (p, q), strict=True)),
             self.along.eq(Mux(steep, way["y"], way["x"])),
             self.aside.eq(Mux(steep, way["x"], way["y"])),
-            self.p.eq(p),
-            self.q.eq(q),
-            self.steep.eq(steep),
             self.leaving.eq(Mux(steep, ~way["y"][-1], way["x"][-1])),
         ]
+        m.d.comb += [self.p.eq(p), self.q.eq(q), self.steep.eq(steep)]
+        # 6
+        less = Signal(bits - 4, name="less_reach", reset_less=True)
         m.d.sync += [
             self.first.eq(upper + Mux(steep, ACROSS[1] - ABOVE, DOWN[1] - ABOVE)),
             self.last.eq(lower + Mux(steep, ACROSS[1], DOWN[1] + BELOW)),
             self.span.eq(size["y"] + Mux(steep, ABOVE, ABOVE + BELOW)),
-            self.middle.eq((Mux(steep, p.y, p.x) + Mux(steep, q.y, q.x)) >> 1),
-            self.reach.eq((length >> 1) - (length >> 5) - 2),
+            self.middle.eq((ends[0] + ends[1]) >> 1),
+            less.eq((length >> 5) + 2),
         ]
+        # 7
+        m.d.sync += self.reach.eq((length >> 1) - less)
         return m

@@ -1,13 +1,29 @@
-"""The refiner's program: parts of rows, each row a step of the reckoner, some repeated."""
+"""The refiner's program: parts of rows, each row a step of the reckoner, some repeated.
+
+The rows pass through a pipeline: a source is read before the step that loads it is taken, what is kept
+in a place earlier still, and what a step causes is there clocks later. :class:`_Rows` lets rows pass until
+what is needed is there. How often a row is repeated stands ``AHEAD`` rows before it.
+"""
 
 from amaranth.lib import enum
 
 from hdl.vision.edges.shapes import DOWN, PART_BITS
 from hdl.vision.refining.gather import PROBE
-from hdl.vision.refining.reckoner import QUOTIENT
+from hdl.vision.refining.reckoner import DIVISION
 from hdl.vision.refining.shapes import FRACTION, SLOPE_FRACTION
 
 __all__ = ["CONSTANTS", "FIELDS", "Part", "Place", "Source", "program"]
+
+#: Rows before a repeated one that say so. They are not repeated.
+AHEAD = 3
+#: Rows from a source's place to the row that loads it; from a step that keeps to the place's row.
+PLACE_READ, KEPT = 2, 3
+#: Rows from the last step of a division to a load of its quotient.
+QUOTIENT_READ = 4
+#: Rows from one that sets c or s, or chooses the vertex, to a load of the vertex's distance.
+FINE_READ = PROBE + 4
+#: Rows that are still carried out after the one with ``end``.
+IN_FLIGHT = 2
 
 
 class Part(enum.IntEnum, shape=3):
@@ -22,20 +38,20 @@ class Part(enum.IntEnum, shape=3):
 
 
 class Source(enum.IntEnum, shape=4):
-    """What an operand is."""
+    """What an operand is: groups of four of about the same width."""
 
     N = 0
-    U = 1
-    UU = 2
-    E = 3
-    UE = 4
-    EE = 5
-    TOTAL = 6
-    QUOTIENT = 7
-    FINE = 8
-    ALONG = 9
-    ASIDE = 10
-    KEPT = 11
+    TOTAL = 1
+    ALONG = 2
+    ASIDE = 3
+    U = 4
+    E = 5
+    QUOTIENT = 6
+    FINE = 7
+    UU = 8
+    UE = 9
+    EE = 10
+    KEPT = 12  #: alone in its group of four
 
 
 class Place(enum.IntEnum, shape=4):
@@ -60,7 +76,7 @@ CONSTANTS = {Place.ORIGIN: (DOWN[1] << FRACTION) - _HALF, Place.ONE: 1 << 2 * SL
 
 #: Field -> bits; 0 where nothing is said.
 FIELDS = {
-    **{"repeat": 5, "source": 4, "place": 4},
+    **{"stay": 6, "source": 4, "place": 4},
     **dict.fromkeys(("load_b", "shift", "load_y", "clear", "add", "multiply", "divide", "minus", "absolute"), 1),
     **dict.fromkeys(("clear_sign", "keep", "set_c", "set_s", "at_end", "vertex_1", "vertex_2", "end"), 1),
 }
@@ -68,19 +84,56 @@ FIELDS = {
 
 class _Rows:
     def __init__(self, steps):
-        self.rows = []
+        self.rows = [{}]  # the first one is for the time when there is nothing to do
         self._steps = steps  #: of a multiplication
+        self._repeatable = 0  # first row that can be repeated
+        self._ready = {}  # name of a source or place -> first row that can read it
+        self._settled = 0  # first row that can read the accumulator for another step
+
+    def start(self):
+        """A part starts. Returns its first row."""
+        self._ready = {Source.FINE.name: len(self.rows) + FINE_READ}
+        self._repeatable = len(self.rows) + AHEAD
+        return len(self.rows)
+
+    def end(self):
+        self.step(end=1)
+        for _ in range(IN_FLIGHT):
+            self.step()
+
+    def wait(self, row):
+        while len(self.rows) < row:
+            self.step()
 
     def step(self, repeat=0, **fields):
-        self.rows.append({"repeat": repeat, **{name: int(value) for name, value in fields.items()}})
+        if repeat:
+            self.wait(self._repeatable)
+            self.rows[-AHEAD]["stay"] = repeat
+            self._repeatable = len(self.rows) + AHEAD + 1
+        row = len(self.rows)
+        self.rows.append({name: int(value) for name, value in fields.items()})
+        if "keep" in fields:
+            self._ready[fields["place"].name] = row + KEPT
+        if any(fields.get(name) for name in ("set_c", "set_s", "at_end")):
+            self._ready[Source.FINE.name] = row + FINE_READ
+        if "divide" in fields:
+            self._ready[Source.QUOTIENT.name] = row + QUOTIENT_READ
+        if "add" in fields or "multiply" in fields:
+            self._settled = row + 2
 
     def load(self, what, into="load_b"):
         """Load a source, or what is kept in a place."""
+        self.wait(self._ready.get(what.name, 0))
         if isinstance(what, Place):
             self.step(place=what)
-            self.step(source=Source.KEPT, **{into: 1})
-        else:
-            self.step(source=what, **{into: 1})
+            for _ in range(PLACE_READ - 1):
+                self.step()
+            what = Source.KEPT
+        self.step(source=what, **{into: 1})
+
+    def absolute(self):
+        self.wait(self._settled)
+        self.step(absolute=1)
 
     def add(self, what, *, minus=False, shift=0):
         self.load(what)
@@ -97,10 +150,10 @@ class _Rows:
 
     def divide(self, divisor, shift):
         """By ``divisor`` times 2^shift: the dividend loses its sign, the quotient has 16 more bits."""
-        self.step(absolute=1)
+        self.absolute()
         self.load(divisor)
         self.step(repeat=shift, shift=1)
-        self.step(repeat=QUOTIENT - 1, divide=1)
+        self.step(repeat=DIVISION - 1, divide=1)
 
     def fresh(self):
         self.step(clear=1, clear_sign=1)
@@ -109,7 +162,7 @@ class _Rows:
 def _chord(rows):
     rows.fresh()
     rows.add(Source.ALONG)
-    rows.step(absolute=1)
+    rows.absolute()
     rows.step(keep=1, place=Place.DIVISOR)
     rows.step(clear=1)
     rows.add(Source.ASIDE)
@@ -118,7 +171,6 @@ def _chord(rows):
     rows.step(set_c=1)
     rows.add(Source.QUOTIENT)
     rows.step(set_s=1, keep=1, place=Place.SLOPE)
-    rows.step(repeat=PROBE)
     rows.step(clear=1)
     rows.add(Source.FINE)
     rows.add(Place.ORIGIN)
@@ -150,9 +202,8 @@ def _fit(rows):
 
 
 def _ends(rows):
-    for at_end, place in ((0, Place.START), (1, Place.END)):
-        rows.step(repeat=PROBE, at_end=at_end)
-        rows.step(clear=1, at_end=at_end)
+    for place in (Place.START, Place.END):
+        rows.step(clear=1, at_end=place == Place.END)
         rows.add(Source.FINE, minus=True)
         rows.add(Place.ORIGIN, minus=True)
         rows.step(keep=1, place=place)
@@ -162,7 +213,7 @@ def _cross(rows):
     rows.fresh()
     rows.add(Place.ONE)
     rows.multiply(Place.SLOPE_2, Place.SLOPE_1, minus=True)
-    rows.step(absolute=1)
+    rows.absolute()
     rows.step(keep=1, place=Place.DIVISOR)
     rows.step(clear=1)
     rows.add(Place.OFFSET_1, shift=SLOPE_FRACTION)
@@ -175,7 +226,7 @@ def _alike(rows):
     rows.fresh()
     rows.add(Place.SLOPE_1)
     rows.add(Place.SLOPE_2, minus=True)
-    rows.step(absolute=1)
+    rows.absolute()
     rows.step(keep=1, place=Place.DIVISOR)
     rows.step(clear=1)
     rows.add(Place.OFFSET_2)
@@ -202,7 +253,7 @@ def program(steps):
     """(rows, each a dict of fields; Part -> its first row). A product takes ``steps`` steps."""
     rows, starts = _Rows(steps), {}
     for part, write in zip(Part, (_chord, _fit, _ends, _cross, _alike, _residual), strict=True):
-        starts[part] = len(rows.rows)
+        starts[part] = rows.start()
         write(rows)
-        rows.step(end=1)
+        rows.end()
     return rows.rows, starts

@@ -6,10 +6,12 @@ from amaranth.lib.wiring import In, Out
 
 from hdl.vision.refining.shapes import word_bits
 
-__all__ = ["QUOTIENT", "Reckoner", "multiplier_bits"]
+__all__ = ["DIVISION", "QUOTIENT", "Reckoner", "multiplier_bits"]
 
-#: Steps of a division: a bit to tell an overflow, an integer one and 16 of the fraction.
+#: Bits of a quotient: one to tell an overflow, an integer one and 16 of the fraction.
 QUOTIENT = 18
+#: Steps of a division.
+DIVISION = 2 * QUOTIENT + 1
 
 
 def multiplier_bits(width, height):
@@ -22,13 +24,18 @@ class Reckoner(wiring.Component):
 
     ::
 
+        clock     0                    1                  2
         operand -> | b | -- shift left
-                     '-----> a + b, a - b -> | a |
+                     '-----> b, -b -> | term | -> a + term -> | a |
         operand -> | y | -- shift right
 
     A product is added to ``a`` by as many steps ``multiply`` as y has bits, the last with ``minus`` the other way: it
-    is the sign's. A division of ``a`` by half of ``b``, both positive, takes 18 steps; then ``quotient`` is 2^16 times
-    the ratio, cut off and with the sign, and ``overflow`` says that it is 2^17 or more. Sums wrap.
+    is the sign's. A division of ``a`` by half of ``b``, both positive, takes ``DIVISION`` steps, does not restore what
+    is left, and leaves it in ``a``; then ``quotient`` is 2^16 times the ratio, cut off and with the sign, and
+    ``overflow`` says that it is 2^17 or more. Sums wrap.
+
+    Latency: b and y follow in the next clock, a another clock later, quotient and overflow, too, and 2 of the quotient.
+    So a step ``absolute`` or the first one ``divide`` comes 2 clocks or more after one that changes a.
 
     Members
     -------
@@ -61,17 +68,8 @@ class Reckoner(wiring.Component):
         a, b = Signal.like(self.a, reset_less=True), Signal.like(self.operand, reset_less=True)
         y = Signal(self._multiplier, reset_less=True)
         bits, sign = Signal(QUOTIENT, reset_less=True), Signal(reset_less=True)
-        less, base, term, total = Signal(), Signal.like(a), Signal.like(a), Signal.like(a)
-        fits = ~total[-1]
-        m.d.comb += [
-            less.eq(self.minus | self.divide | self.absolute & a[-1]),
-            base.eq(Mux(self.absolute, 0, a)),
-            term.eq(Mux(self.absolute, a, b) ^ less.replicate(len(a)).as_signed()),
-            total.eq((Cat(less, base) + Cat(less, term))[1:]),  # one adder: the carry comes from a bit below
-            self.a.eq(a),
-            self.quotient.eq(Mux(sign, -bits, bits)),
-            self.overflow.eq(bits[-1]),
-        ]
+        m.d.comb += [self.a.eq(a), self.overflow.eq(bits[-1])]
+        m.d.sync += self.quotient.eq(Mux(sign, -bits, bits))
         with m.If(self.load_b):
             m.d.sync += b.eq(self.operand)
         with m.Elif(self.shift | self.multiply):
@@ -80,14 +78,33 @@ class Reckoner(wiring.Component):
             m.d.sync += y.eq(self.operand)
         with m.Elif(self.multiply):
             m.d.sync += y.eq(y >> 1)
-        with m.If(self.clear):
-            m.d.sync += a.eq(0)
-        with m.Elif(self.divide):
-            m.d.sync += [a.eq(Mux(fits, total, a) << 1), bits.eq(Cat(fits, bits))]
-        with m.Elif(self.add | self.absolute | self.multiply & y[0]):
-            m.d.sync += a.eq(total)
+
+        # 1. Every other step of a division takes the sign of what is left: it is b's turn to be added or subtracted.
+        less, term, carry = Signal(), Signal.like(a, reset_less=True), Signal(reset_less=True)
+        adds, clears, divides, doubles, is_other = (
+            Signal(reset_less=True, name=n) for n in ("adds", "clears", "divides", "doubles", "is_other")
+        )
+        m.d.comb += less.eq(self.minus | Mux(a[-1], self.absolute, self.divide))
+        m.d.sync += [
+            term.eq(Mux(self.absolute, a, b) ^ less.replicate(len(a)).as_signed()),
+            carry.eq(less),
+            is_other.eq(self.divide & ~is_other),
+            adds.eq(self.add | self.absolute | self.multiply & y[0] | self.divide & ~is_other),
+            clears.eq(self.clear),
+            *(divides.eq(self.divide), doubles.eq(divides)),
+        ]
+        with m.If(self.divide & ~is_other):
+            m.d.sync += bits.eq(Cat(~a[-1], bits))
         with m.If(self.clear_sign):
             m.d.sync += sign.eq(0)
         with m.Elif(self.absolute):
             m.d.sync += sign.eq(sign ^ a[-1])
+
+        # 2
+        base = Signal.like(a)
+        m.d.comb += base.eq(Mux(doubles, a << 1, a))
+        with m.If(clears | self.absolute):
+            m.d.sync += a.eq(0)
+        with m.Elif(adds):
+            m.d.sync += a.eq((Cat(carry, base) + Cat(carry, term))[1:])  # one adder: the carry comes from a bit below
         return m

@@ -2,13 +2,13 @@
 
 from amaranth import Module, Signal
 from amaranth.lib import wiring
-from amaranth.lib.fifo import SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from hdl.pixels import GreyPixel, ItemKind, unstalled
 from hdl.vision.edges.edges import Edges
 from hdl.vision.edges.ring import EdgeRing
 from hdl.vision.matching.geometry import marker_layout
+from hdl.vision.queue import Queue
 from hdl.vision.refining.refiner import Refiner
 from hdl.vision.refining.shapes import refined_layout
 
@@ -24,8 +24,8 @@ class Refining(wiring.Component):
                             | ^
         markers -> queue -> refiner -> markers
 
-    Throughput: a pixel a clock; a marker in about 4,500 clocks and what the crossings in its rows take, see
-    :class:`~hdl.vision.refining.refiner.Refiner`. Latency: 7 rows and some 2,500 clocks after a marker's last row,
+    Throughput: a pixel a clock; a marker in about 5,000 clocks and what the crossings in its rows take, see
+    :class:`~hdl.vision.refining.refiner.Refiner`. Latency: 7 rows and some 3,000 clocks after a marker's last row,
     because the crossings below it must have come; END, SKIP and ABORT wait for the markers before them.
 
     Memory at 640 x 480: 221 kbit of crossings, 56 kbit of rows, 20 kbit of markers, 10 kbit of tables and program.
@@ -81,12 +81,12 @@ class Refining(wiring.Component):
         m.submodules.edges = edges = Edges(**self._sizes)
         m.submodules.ring = ring = EdgeRing(**self._sizes, depth=self._ring_depth)
         m.submodules.refiner = refiner = Refiner(**self._sizes, depth=self._ring_depth)
-        m.submodules.queue = queue = SyncFIFOBuffered(width=marker.shape().size, depth=self._depth)
+        m.submodules.queue = queue = Queue(width=marker.shape().size, depth=self._depth)
         connect(m, flipped(self.pixels), edges.i)
         connect(m, edges.o_across, ring.i_across)
         connect(m, edges.o_down, ring.i_down)
         connect(m, refiner.o, flipped(self.o))
-        is_item, has_room = Signal(), Signal()
+        is_item, is_full, has_room = Signal(), Signal(), Signal()
         m.d.comb += [
             *(
                 getattr(edges, name).eq(getattr(self, name))
@@ -106,8 +106,7 @@ class Refining(wiring.Component):
             *(getattr(refiner, name).eq(getattr(self, name)) for name in ("columns", "rows")),
             # A quarter of the queue is for marks alone: those of frames that end while the rest is worked off.
             is_item.eq(marker.kind == ItemKind.ITEM),
-            has_room.eq(queue.w_rdy & ~(is_item & (queue.w_level >= self._depth // 4 * 3))),
-            refiner.hurry.eq(queue.w_level > self._depth // 4),
+            has_room.eq(queue.w_rdy & ~(is_item & is_full)),
             queue.w_data.eq(marker),
             queue.w_en.eq(self.i.valid & has_room),
             self.dropped.eq(self.i.valid & is_item & ~has_room),
@@ -115,5 +114,9 @@ class Refining(wiring.Component):
             refiner.valid.eq(queue.r_rdy),
             refiner.marker.eq(queue.r_data),
             queue.r_en.eq(refiner.take),
+        ]
+        m.d.sync += [
+            is_full.eq(queue.level >= self._depth // 4 * 3),  # a clock late, but no two markers come at once
+            refiner.hurry.eq(queue.level > self._depth // 4),
         ]
         return m

@@ -9,7 +9,9 @@ from hdl.vision.edges.ring import BLOCK_BITS
 __all__ = ["Scanner"]
 
 #: Clocks from a crossing's number, or a block's, to what is read.
-READ = 2
+READ = 3
+#: And from a number to whether it is of a crossing that is gone.
+AGE = 2
 
 
 class Scanner(wiring.Component):
@@ -36,7 +38,7 @@ class Scanner(wiring.Component):
         Strobe: a complete frame is done with; there is one that is not.
     go : In(1), first, last : In(signed(rows + 2))
         Strobe: read from the row ``first``, which may be negative, to the row ``last``, as rows of the pixels with
-        which crossings were found.
+        which crossings were found. Both must have been there for 5 clocks.
     stop : In(1)
         What was read is beyond ``last``.
     block, number : Out, start, written : In
@@ -98,27 +100,34 @@ class Scanner(wiring.Component):
 
         has_come, is_there = Signal(), Signal()
         number, start = Signal.like(self.number, reset_less=True), Signal.like(self.start, reset_less=True)
-        age = Signal.like(self.number)
-        reading, wait = Signal(READ), Signal(range(READ + 2))
+        age, is_old = Signal.like(self.number, reset_less=True), Signal(reset_less=True)
+        is_any, next_block = Signal(reset_less=True), Signal(len(reached))
+        left, is_left = Signal.like(self.number, reset_less=True), Signal(reset_less=True)
+        reading, wait = Signal(READ), Signal(range(READ + AGE))
         m.d.comb += [
+            self.number.eq(number),
+            self.valid.eq(reading[-1]),
+        ]
+        issue = Signal()
+        m.d.sync += [
             self.block.eq(self.first[BLOCK_BITS:-1] & (~self.first[-1]).replicate(len(self.first))),
             has_come.eq(self.behind | (row > self.last)),
             # The next frame, if it has begun, may be one row further.
-            is_there.eq(~self.behind | (behind == 1) & (~begun | ((reached + 1) >> BLOCK_BITS < self.block))),
-            self.number.eq(number),
-            self.valid.eq(reading[-1]),
+            is_there.eq(~self.behind | (behind == 1) & (~begun | (next_block < self.block))),
+            next_block.eq((reached + 1) >> BLOCK_BITS),
             age.eq(self.written - start),
+            is_old.eq(age > self._depth),
+            is_any.eq(age != 0),
+            reading.eq((reading << 1) | issue),
         ]
-        issue = Signal()
-        m.d.sync += reading.eq((reading << 1) | issue)
         with m.FSM(name="scanner"):
-            with m.State("IDLE"):
-                m.d.sync += wait.eq(READ + 1)
-                with m.If(self.go):
-                    m.d.sync += self.lost.eq(0)
-                    m.next = "WAIT"
+            with m.State("IDLE"), m.If(self.go):
+                m.d.sync += self.lost.eq(0)
+                m.next = "WAIT"
             with m.State("WAIT"):
                 m.d.comb += self.busy.eq(1)
+                # Where the rows start has been read for long, and was there when that was told.
+                m.d.sync += [start.eq(self.start), wait.eq(AGE)]
                 with m.If(has_come):
                     m.next = "LOOK"
                 with m.If(has_come & ~is_there):
@@ -126,24 +135,21 @@ class Scanner(wiring.Component):
                     m.next = "IDLE"
             with m.State("LOOK"):
                 m.d.comb += self.busy.eq(1)
-                m.d.sync += [start.eq(self.start), number.eq(self.start), wait.eq(wait - 1)]
+                m.d.sync += [number.eq(start), left.eq(age), is_left.eq(is_any), wait.eq(wait - 1)]
                 with m.If(wait == 0):
-                    m.next = "START"
-            with m.State("START"):
-                m.d.comb += self.busy.eq(1)
-                m.next = "READ"
-                with m.If(age > self._depth):
-                    m.d.sync += self.lost.eq(1)
-                    m.next = "IDLE"
+                    m.next = "READ"
+                    with m.If(is_old):
+                        m.d.sync += self.lost.eq(1)
+                        m.next = "IDLE"
             with m.State("READ"):
-                m.d.comb += [self.busy.eq(1), issue.eq((number != self.written) & ~self.stop)]
-                m.d.sync += [number.eq(number + issue), wait.eq(READ + 1)]
+                m.d.comb += [self.busy.eq(1), issue.eq(is_left & ~self.stop)]
+                m.d.sync += [number.eq(number + 1), left.eq(left - 1), is_left.eq(left != 1), wait.eq(READ + 1)]
                 with m.If(~issue):
                     m.next = "REST"
             with m.State("REST"):
                 m.d.comb += self.busy.eq(1)
                 m.d.sync += wait.eq(wait - 1)
                 with m.If(wait == 0):
-                    m.d.sync += self.lost.eq(age > self._depth)
+                    m.d.sync += self.lost.eq(is_old)
                     m.next = "IDLE"
         return m
