@@ -23,8 +23,8 @@ class EdgeRing(wiring.Component):
 
     ::
 
-        crossings across -> ring -> | | -> | data |
-        crossings down ---> ring -> | | -> | data |
+        crossings across, number -> | | -> ring -> | | -> | data |
+        crossings down, number ---> | | -> ring -> | | -> | data |
         numbers of both --> blocks of rows -> | | -> | start |
 
     Crossings are numbered modulo a frame's pixels at least, so an age that is more than ``depth`` tells that a crossing
@@ -49,7 +49,7 @@ class EdgeRing(wiring.Component):
     block : In, start : Out
         Number of the first crossing of this block of rows, three clocks later.
     number : In, data : Out(point_layout(width, height))
-        A crossing, three clocks later.
+        A crossing, four clocks later.
     written : Out
         Number of the crossing that comes next, a clock later.
     """
@@ -86,7 +86,7 @@ class EdgeRing(wiring.Component):
             begins.eq(Mux(self.row[BLOCK_BITS:] == 0, self.settled, self.row_start) & (self.row[:BLOCK_BITS] == 0)),
             begun.eq(self.row >> BLOCK_BITS),
         ]
-        for name in ("across", "down"):
+        for is_down, name in enumerate(("across", "down")):
             stream = getattr(self, f"i_{name}")
             count = Signal.like(self.written, name=f"count_{name}")
             m.submodules[f"{name}_blocks"] = starts = Memory(
@@ -97,6 +97,9 @@ class EdgeRing(wiring.Component):
             start = Signal(len(count), name=f"start_{name}", reset_less=True)
             with m.If(stream.valid):
                 m.d.sync += count.eq(count + 1)
+            number = Signal.like(self.number, name=f"number_{name}", reset_less=True)  # near its own memories
+            with m.If(self.down == is_down):
+                m.d.sync += number.eq(self.number)
             # In parts as wide as one block memory of this depth: else some would share a bit, and choose behind it.
             part = max(1, BLOCK_MEMORY // self._depth)
             for low in range(0, len(point.as_value()), part):
@@ -107,7 +110,7 @@ class EdgeRing(wiring.Component):
                     write.addr.eq(count[: len(write.addr)]),
                     write.data.eq(bits),
                     write.en.eq(stream.valid),
-                    read.addr.eq(self.number[: len(read.addr)]),
+                    read.addr.eq(number[: len(read.addr)]),
                 ]
                 m.d.sync += point.as_value()[low : low + part].eq(read.data)
             m.d.comb += [

@@ -8,8 +8,8 @@ from hdl.vision.edges.ring import BLOCK_BITS
 
 __all__ = ["Scanner"]
 
-#: Clocks from a crossing's number, or a block's, to what is read.
-READ = 3
+#: Clocks from a crossing's number to what is read.
+READ = 4
 #: And from a number to whether it is of a crossing that is gone.
 AGE = 2
 
