@@ -1,6 +1,6 @@
 """Decisions in, operations on component features out: the slots and columns that a decision is about."""
 
-from amaranth import Cat, Module, Mux, Signal
+from amaranth import Array, Module, Mux, Signal
 from amaranth.lib import data, enum, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
@@ -153,8 +153,7 @@ class Labelling(wiring.Component):
 
         # The descriptors.
         def chosen(choice, field, third, fourth):
-            options = Cat(top[field], hand[field], third, fourth)
-            return options.word_select(choice, len(top[field]))
+            return Array([top[field], hand[field], third, fourth])[choice]
 
         below = stack.below
         for place, descriptor in (("top", top), ("hand", hand)):
