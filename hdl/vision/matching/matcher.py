@@ -40,7 +40,7 @@ class Matcher(wiring.Component):
         lanes -> unfold -> plane: points -> products -> search -> which points
                    divider -'                   '-----> tally -> rejected, notes -> verdict
 
-    Time: 310 clocks at most for a candidate, 1 for a mark. Marks keep their place in the order.
+    Time: 310 clocks at most for a candidate, 4 for a mark. Marks keep their place in the order.
 
     Memory: 302 rows of 49 bits, 32 points.
 

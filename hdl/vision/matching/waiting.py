@@ -33,7 +33,7 @@ class Waiting(wiring.Component):
                '---------------------------+-------------------------------'
 
     Marks have ``depth`` words and more of the queue for themselves. An ABORT that would void nothing is not queued, so
-    only complete frames add marks while no candidate does; while 32 candidates and the one in hand are matched, 10,300
+    only complete frames add marks while no candidate does; while 32 candidates and the one in hand are matched, 10,400
     clocks, at most 41 frames of 16 x 16 can end.
 
     Memory: 2 ``depth`` words of the queue, and the ring.
