@@ -137,7 +137,7 @@ def test_live_window():
     for rows, count in ((60, 0), (86, 1), (150, 1), (176, 3), (362, 5), (478, 6), (479, 6)):
         _, results = rtl.feed(pixels[fed : rows * 640])
         fed = rows * 640
-        for _ in range(200):
+        for _ in range(400):
             live = rtl.read("live")
         assert not results and live == {"frame": 1, "markers": count}, f"after {rows} rows"
         assert rtl.read("irq_status")["marker"] == (count > 0)
