@@ -84,14 +84,14 @@ def row_is_of(row, y, contents):
     return False
 
 
-def test_exchange_in_the_middle(simulator):
+def test_exchange_in_the_middle(large_simulator):
     """Old lists above, new ones below; only in a row that was being painted there may be some of both."""
     random = np.random.default_rng(5)
     contents = [lists(random, 4, 20, 1), lists(random, 6, 40, 2)]
     program = [(Op.LOAD, 1), (Op.SHOW, PICTURE)]
     for number, rows in ((2, 31), (1, 26), (2, 20), (1, 43)):
         program += [(Op.SHOW, rows * ROW + 100), (Op.LOAD, number), (Op.SHOW, PICTURE - rows * ROW - 100)]
-    shown, _ = play(simulator, program, contents)
+    shown, _ = play(large_simulator, program, contents)
     mixed = changes = 0
     for got in shown:
         for y in range(CONFIG.height):

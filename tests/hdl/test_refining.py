@@ -194,7 +194,7 @@ def test_latency(centre, side, roll):
     assert check(frames_of(run, LARGE), [frame]) == 1
 
 
-def test_emitted_verilog(simulator):
+def test_emitted_verilog(large_simulator):
     """Markers, a cut frame, idle clocks and a reset in both simulators: the same, clock for clock."""
     good = [frame for frame in pictures(12, seed=50) if (expected(frame)[1]["flags"] & 1).sum() == 2]
     frames = [good[0], good[1], good[0], good[1]]
@@ -203,6 +203,6 @@ def test_emitted_verilog(simulator):
     idle = random_idle(len(beats), 0.2, seed=5)
     idle[frames[0].size :] = 0
     given, options = {"i": (beats, idle)}, {"drain_clocks": 9000, "reset_at": [at]}
-    run = cocotb_run(Chain, simulator, given, settings(SMALL), width=SMALL[0], height=SMALL[1], **options)
+    run = cocotb_run(Chain, large_simulator, given, settings(SMALL), width=SMALL[0], height=SMALL[1], **options)
     assert_same(run, StreamEngine(Chain, *SMALL).run(given, settings(SMALL), **options))
     assert check(frames_of(run, SMALL, run.resets[0]), frames[3:]) == 2

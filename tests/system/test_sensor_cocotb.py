@@ -107,7 +107,7 @@ def check(got, expected):
         assert one.tolist() == other, f"frame {index}"
 
 
-def test_small_frames(simulator):
+def test_small_frames(large_simulator):
     """A reset in the middle of a frame, two frames without idle clocks within, and one with."""
     size = (64, 48)
     random = np.random.default_rng(1)
@@ -127,7 +127,7 @@ def test_small_frames(simulator):
         for number in numbers:
             first = number * 48 * 64
             expected.append(encoded(number, models[number], int(time[first]), int(time[first + 48 * 64 - 1])))
-    check(play(simulator, size, parts, REFINING)[0], expected)
+    check(play(large_simulator, size, parts, REFINING)[0], expected)
 
 
 def test_full_frame():

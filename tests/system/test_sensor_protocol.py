@@ -174,7 +174,8 @@ def test_sizes_change_between_frames():
         results += rtl.feed(pixels, idle=idle, publications=30 * (index == 29), patience=20_000)[1]
     assert rtl.read("bad_sizes")["count"] == 0 and rtl.read("frames_complete")["count"] == 30
     # A frame that ends while the markers of the one before are refined may be passed over; its number is missing then.
-    assert len(results) > 20 and results[-1][0] == 29
+    numbers = [number for number, _ in results]
+    assert len(numbers) > 20 and numbers == sorted(set(numbers))
     compare([result for _, result in results], [frames[number] for number, _ in results], SETTINGS)
 
 
