@@ -47,25 +47,26 @@ def test_block_ram(tmp_path, name):
     assert registers == (0 if mode == "OUTREG" else 18)
 
 
-def test_multiplier(tmp_path):
-    """Factors and product are registered in it; a factor that is used elsewhere has a register there as well."""
+def multiplier(tmp_path, first):
+    """A multiplier between registers, of which one factor's is ``first``, and the number of those outside of it."""
     found = cells(
         tmp_path,
-        "always @(posedge clk) begin first <= a; second <= b; result <= first * second; kept <= second; end "
+        f"always @(posedge clk) begin first <= {first}; second <= b; result <= first * second; kept <= second; end "
         "assign product = result; assign q = kept;",
     )
-    (multiplier,) = (cell for cell in found if cell["type"] == "MULT18X18D")
-    parameters = multiplier["parameters"]
+    (block,) = (cell for cell in found if cell["type"] == "MULT18X18D")
+    return block["parameters"], sum(cell["type"] == "TRELLIS_FF" for cell in found)
+
+
+def test_multiplier(tmp_path):
+    """Factors and product are registered in it; a factor that is used elsewhere has a register there as well."""
+    parameters, outside = multiplier(tmp_path, "a")
     assert {parameters[f"REG_{place}_CLK"] for place in ("INPUTA", "INPUTB", "OUTPUT")} == {"CLK0"}
-    assert sum(cell["type"] == "TRELLIS_FF" for cell in found) == 18  # ``second`` and ``kept``
+    assert outside == 18  # ``second`` and ``kept``
 
 
 def test_multiplier_with_reset(tmp_path):
-    found = cells(
-        tmp_path,
-        "always @(posedge clk) begin first <= rst ? 0 : a; second <= b; result <= first * second; end "
-        "assign product = result; assign q = 0;",
-    )
-    (multiplier,) = (cell for cell in found if cell["type"] == "MULT18X18D")
-    parameters = multiplier["parameters"]
+    """A factor whose register has a reset keeps both factors' outside."""
+    parameters, outside = multiplier(tmp_path, "rst ? 0 : a")
     assert parameters["REG_OUTPUT_CLK"] == "CLK0" and "REG_INPUTA_CLK" not in parameters
+    assert outside == 27
