@@ -4,7 +4,7 @@ from amaranth import Module, Signal
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
-from hdl.memories import NO_COLLISIONS
+from hdl.memories import NO_COLLISIONS_IN_BLOCK
 
 __all__ = ["Queue"]
 
@@ -46,7 +46,7 @@ class Queue(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.words = words = memory.Memory(
-            shape=self._width, depth=self._depth, init=[], attrs=NO_COLLISIONS | {"ram_style": "block"}
+            shape=self._width, depth=self._depth, init=[], attrs=NO_COLLISIONS_IN_BLOCK
         )
         write, read = words.write_port(), words.read_port()
         newest, oldest = Signal(range(self._depth)), Signal(range(self._depth))

@@ -6,7 +6,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
-from hdl.memories import NO_COLLISIONS
+from hdl.memories import NO_COLLISIONS, NO_COLLISIONS_IN_BLOCK
 from hdl.pixels import unstalled
 from hdl.vision.edges.shapes import number_bits, point_layout
 
@@ -90,7 +90,7 @@ class EdgeRing(wiring.Component):
             stream = getattr(self, f"i_{name}")
             count = Signal.like(self.written, name=f"count_{name}")
             m.submodules[f"{name}_blocks"] = starts = Memory(
-                shape=len(count), depth=self._blocks, init=[], attrs=NO_COLLISIONS | {"ram_style": "block"}
+                shape=len(count), depth=self._blocks, init=[], attrs=NO_COLLISIONS_IN_BLOCK
             )
             note, look = starts.write_port(), starts.read_port()
             point = Signal(self._point, name=f"point_{name}", reset_less=True)

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
 from hdl.config import DIRECTIONS
-from hdl.memories import NO_COLLISIONS
+from hdl.memories import NO_COLLISIONS_IN_BLOCK
 from hdl.vision.blob import blob_layout, sum_bits
 from hdl.vision.matching.geometry import POINTS, pixel_layout
 
@@ -115,7 +115,7 @@ class Lanes(wiring.Component):
 
         def lane(name, number, value, *, in_result=False):
             m.submodules[name] = words = memory.Memory(
-                shape=value.shape(), depth=self._slots + 1, init=[], attrs=NO_COLLISIONS | {"ram_style": "block"}
+                shape=value.shape(), depth=self._slots + 1, init=[], attrs=NO_COLLISIONS_IN_BLOCK
             )
             write, read = words.write_port(), words.read_port()
             where = Signal.like(reader.place, name=f"where_{name}", reset_less=True)

@@ -66,7 +66,6 @@ _CHOICES = data.StructLayout(
         "merge": 1,
         "finish": 1,
         "gap": 1,
-        "unfirst": 1,
     }
 )
 
@@ -126,10 +125,10 @@ class Labelling(wiring.Component):
             slots.rewind.eq(early.rewind),
             slots.clear.eq(early.clear),
             slots.clear_given.eq(now.clear),
-            stack.push_soon.eq(early.enter & ~early.whole),
+            stack.push_soon.eq(early.push),
             stack.pop_soon.eq(early.pop),
             stack.clear_soon.eq(early.clear),
-            stack.push.eq(now.enter & ~now.whole),
+            stack.push.eq(now.push),
             stack.popped.eq(now.pop),
             stack.pushed.eq(top),
             runs.append.eq(now.ends_run),
@@ -195,7 +194,7 @@ class Labelling(wiring.Component):
             self.late.appended.first.eq(now.first),
             self.late.appended.last.eq(now.last),
             self.late.index.eq(runs.index),
-            self.late.unfirst.eq(choices.unfirst),
+            self.late.unfirst.eq(now.latest_from_hand),
             self.late.unfirst_index.eq(hand.earliest),
             self.late.set_last.eq(now.set_last),
             self.late.last_index.eq(top.latest),
@@ -207,19 +206,12 @@ class Labelling(wiring.Component):
     def _choose(m, d):
         """What decision ``d`` means for each value."""
         c = Signal(_CHOICES, name="choose")
-        joined, from_hand, from_above, hand_from_above, latest_from_hand = (
-            Signal(name=name) for name in ("joined", "from_hand", "from_above", "hand_from_above", "latest_from_hand")
-        )
         grows_top, grows_hand = Signal(), Signal()
-        to_hand_from_top = d.to_hand & ~from_hand & ~from_above
-        top_slot = Mux(from_hand, _From.HAND, Mux(from_above, _From.ABOVE, _From.TOP))
-        latest = Mux(latest_from_hand, _From.HAND, _From.TOP)
+        to_hand_from_top = d.to_hand & ~d.from_hand & ~d.from_above
+        top_slot = Mux(d.from_hand, _From.HAND, Mux(d.from_above, _From.ABOVE, _From.TOP))
+        latest_is_hand = d.from_hand | d.latest_from_hand
+        latest = Mux(latest_is_hand, _From.HAND, _From.TOP)
         m.d.comb += [
-            joined.eq(~d.enter & d.touch & (d.owner == Owner.HAND)),
-            from_hand.eq(Mux(d.enter, ~d.whole & d.touch & (d.owner == Owner.HAND), joined & ~d.top_has_run)),
-            from_above.eq(d.enter & ~d.whole & ~(d.touch & (d.owner != Owner.NONE))),
-            latest_from_hand.eq(from_hand | joined & d.top_has_run & d.hand_has_run),
-            hand_from_above.eq(d.whole & d.touch & (d.owner == Owner.NONE)),
             grows_top.eq(d.ends_run & (d.owner_now == Owner.TOP)),
             grows_hand.eq(d.ends_run & (d.owner_now == Owner.HAND)),
             c.top_slot.eq(Mux(d.leave, _From.BELOW, top_slot)),
@@ -227,7 +219,7 @@ class Labelling(wiring.Component):
             c.top_latest.eq(Mux(d.leave, _From.BELOW, Mux(grows_top, _From.ABOVE, latest))),
             c.hand_slot.eq(
                 Mux(
-                    hand_from_above | d.to_hand & from_above,
+                    d.hand_from_above | d.to_hand & d.from_above,
                     _From.ABOVE,
                     Mux(to_hand_from_top, _From.TOP, _From.HAND),
                 )
@@ -241,7 +233,7 @@ class Labelling(wiring.Component):
             ),
             c.hand_latest.eq(
                 Mux(
-                    d.to_hand & ~latest_from_hand,
+                    d.to_hand & ~latest_is_hand,
                     _From.TOP,
                     Mux(grows_hand, _From.ABOVE, _From.HAND),
                 )
@@ -251,13 +243,13 @@ class Labelling(wiring.Component):
                     d.whole & ~d.touch,
                     _From.ABOVE,
                     Mux(
-                        d.finish | joined & d.top_has_run | (d.owner == Owner.TOP),
+                        d.finish | d.joined & ~d.from_hand | (d.owner == Owner.TOP),
                         _From.TOP,
                         _From.HAND,
                     ),
                 )
             ),
-            c.gone.eq(Mux(joined, Mux(d.top_has_run, _From.HAND, _From.TOP), _From.ABOVE)),
+            c.gone.eq(Mux(d.joined, Mux(d.from_hand, _From.TOP, _From.HAND), _From.ABOVE)),
             c.slot.eq(
                 Mux(
                     d.owner_now == Owner.NONE,
@@ -265,14 +257,13 @@ class Labelling(wiring.Component):
                     Mux(
                         d.owner_now == Owner.TOP,
                         top_slot,
-                        Mux(hand_from_above, _From.ABOVE, _From.HAND),
+                        Mux(d.hand_from_above, _From.ABOVE, _From.HAND),
                     ),
                 )
             ),
-            c.gap_from_hand.eq((d.owner_now == Owner.HAND) | latest_from_hand),
-            c.merge.eq(joined | d.enter & d.touch & (d.owner != Owner.NONE)),
+            c.gap_from_hand.eq((d.owner_now == Owner.HAND) | latest_is_hand),
+            c.merge.eq(d.joined | (d.push | d.whole) & d.touch & (d.owner != Owner.NONE)),
             c.finish.eq(d.finish | d.whole & ~d.touch),
             c.gap.eq((d.owner_now != Owner.NONE) & d.grown_has_run),
-            c.unfirst.eq(joined & d.top_has_run & d.hand_has_run),
         ]
         return c

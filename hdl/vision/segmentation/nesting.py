@@ -40,11 +40,14 @@ class Mark(enum.Enum, shape=unsigned(2)):
 DECISION = data.StructLayout(
     {
         "touch": 1,  #: the run in hand touches the run above
-        "enter": 1,  #: the component of the run above is pushed, or would be, if that were not its only run, and over
-        "whole": 1,  #: it is its only one, and over
         "owner": Owner,  #: of the run in hand, before
-        "top_has_run": 1,  #: the top has a run in this row, before
-        "hand_has_run": 1,  #: the component in hand has
+        "push": 1,  #: the run above is the first of its component, which is pushed
+        "whole": 1,  #: it is its only one, and over: nothing is pushed
+        "joined": 1,  #: the component in hand joins the top
+        "from_hand": 1,  #: the top becomes that in hand
+        "from_above": 1,  #: the top becomes that of the run above
+        "hand_from_above": 1,  #: the component in hand does
+        "latest_from_hand": 1,  #: the top takes the latest run of the component in hand, whose first is no first now
         "owner_now": Owner,  #: of the run in hand, after it has touched
         "grown_has_run": 1,  #: the owner has a run in this row, after the touch and before this one
         "ends_run": 1,  #: the run in hand ends and is added to its owner, or becomes a component
@@ -131,40 +134,32 @@ class Nesting(wiring.Component):
         top, hand = Signal(_DESCRIPTOR), Signal(_DESCRIPTOR)
         owner, pushed = Signal(Owner), Signal()
         top_1, hand_1, owner_1 = Signal(_DESCRIPTOR), Signal(_DESCRIPTOR), Signal(Owner)
-        touch, enter, whole = o.touch, o.enter, o.whole
+        touch, enter = o.touch, Signal()
         m.d.comb += [
             enter.eq((touch | o.advance) & above.first & ~pushed),
-            whole.eq(enter & o.advance & above.last),
-            top_1.eq(top),
-            hand_1.eq(hand),
-            owner_1.eq(owner),
             o.owner.eq(owner),
-            o.top_has_run.eq(top.has_run),
-            o.hand_has_run.eq(hand.has_run),
+            o.whole.eq(enter & o.advance & above.last),
+            o.push.eq(enter & ~o.whole),
+            # What has the earliest run of the row keeps its slot, which is in that run's record.
+            o.joined.eq(~enter & touch & (owner == Owner.HAND)),
+            o.from_hand.eq(o.push & touch & (owner == Owner.HAND) | o.joined & ~top.has_run),
+            o.from_above.eq(o.push & ~(touch & (owner != Owner.NONE))),
+            o.hand_from_above.eq(o.whole & touch & (owner == Owner.NONE)),
+            o.latest_from_hand.eq(o.joined & top.has_run & hand.has_run),
+            stack.push.eq(o.push),
             stack.pushed.descriptor.eq(top),
             stack.pushed.hollow.eq(touch & (owner == Owner.TOP)),
-            stack.push.eq(enter & ~whole),
+            runs.unfirst.eq(o.latest_from_hand),
+            top_1.eq(Mux(o.from_hand, hand, top)),
+            hand_1.eq(hand),
+            owner_1.eq(Mux(touch & ~o.whole, Owner.TOP, Mux(o.hand_from_above, Owner.HAND, owner))),
         ]
-        with m.If(enter):
-            with m.If(~whole):
-                with m.If(touch & (owner == Owner.HAND)):
-                    m.d.comb += top_1.eq(hand)
-                with m.Elif(~(touch & (owner == Owner.TOP))):
-                    m.d.comb += top_1.has_run.eq(0)
-                with m.If(touch):
-                    m.d.comb += owner_1.eq(Owner.TOP)
-            with m.Elif(touch & (owner == Owner.NONE)):
-                m.d.comb += [hand_1.has_run.eq(0), owner_1.eq(Owner.HAND)]
-        with m.Elif(touch):
-            m.d.comb += owner_1.eq(Owner.TOP)
-            with m.If(owner == Owner.HAND):
-                # What has the earliest run of the row keeps its slot, which is in that run's record.
-                with m.If(top.has_run):
-                    m.d.comb += runs.unfirst.eq(hand.has_run)
-                    with m.If(hand.has_run):
-                        m.d.comb += top_1.latest.eq(hand.latest)
-                with m.Else():
-                    m.d.comb += top_1.eq(hand)
+        with m.If(o.from_above):
+            m.d.comb += top_1.has_run.eq(0)
+        with m.If(o.latest_from_hand):
+            m.d.comb += top_1.latest.eq(hand.latest)
+        with m.If(o.hand_from_above):
+            m.d.comb += hand_1.has_run.eq(0)
         m.d.comb += runs.unfirst_index.eq(hand.earliest)
 
         # 2. A run that ends is added to its component, or becomes one.
@@ -195,7 +190,7 @@ class Nesting(wiring.Component):
         # 3. The last run of a component in the row above takes it from the stack. The run in hand cannot end here
         # without having touched it, so what becomes complete or last here has no run that ends.
         m.d.comb += [
-            o.pop.eq(o.advance & above.last & ~whole),
+            o.pop.eq(o.advance & above.last & ~o.whole),
             stack.pop.eq(o.pop),
             o.leave.eq(o.pop & ~stack.below.hollow),
             o.to_hand.eq(o.leave & (owner_2 == Owner.TOP)),
