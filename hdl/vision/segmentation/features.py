@@ -1,7 +1,9 @@
 """Operations of the control in, completed components out: the features of every open component."""
 
-from amaranth import Cat, Module, Signal, signed, unsigned
-from amaranth.lib import wiring
+import itertools
+
+from amaranth import Module, Mux, Signal, signed, unsigned
+from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from hdl.config import DIRECTIONS
@@ -60,42 +62,37 @@ class Features(wiring.Component):
         ]
 
         # Clock 1 to 4: the part on its way, with the run's features worked out beside it.
-        now = Signal(control_layout(depth))
+        stage = data.StructLayout({"control": control_layout(depth), "shows": 1, "marks": 1, "mark": Mark})
+        stages = [Signal(stage, name=f"part{k}") for k in range(5)]
+        now = stages[0].control
         m.d.comb += [
             now.fetch.eq(issue & (part.load | (part.finish | part.run) & ~part.held)),
             now.second_fetched.eq(part.merge),
             now.write.eq(issue & (part.merge | part.run)),
             now.slot.eq(part.slot),
             now.fresh.eq(issue & part.run & operation.new),
+            stages[0].shows.eq(issue & part.finish),
+            stages[0].marks.eq(issue & part.mark),
+            stages[0].mark.eq(operation.mark),
         ]
+        m.d.sync += [later.eq(earlier) for earlier, later in itertools.pairwise(stages)]
         address = Signal.like(part.read)
         m.d.sync += address.eq(part.read)
-        stages = [Signal(now.shape(), name=f"part{k}") for k in (1, 2, 3, 4)]
-        outputs = [Signal(2, name=f"output{k}") for k in (1, 2, 3, 4)]  # a component, a mark
-        marks = [Signal(Mark, name=f"mark{k}") for k in (1, 2, 3, 4)]
-        for stage, previous in zip(stages, [now, *stages], strict=False):
-            m.d.sync += stage.eq(previous)
-        for stage, previous in zip(outputs, [Cat(issue & part.finish, issue & part.mark), *outputs], strict=False):
-            m.d.sync += stage.eq(previous)
-        for stage, previous in zip(marks, [operation.mark, *marks], strict=False):
-            m.d.sync += stage.eq(previous)
-        control = Signal(control_layout(depth))
+        control, ending = Signal(control_layout(depth)), stages[4]
         m.d.comb += [
-            *(control[name].eq(stages[2][name]) for name in ("fetch", "fresh", "second_fetched")),
-            *(control[name].eq(stages[3][name]) for name in ("write", "slot")),
+            *(control[name].eq(stages[3].control[name]) for name in ("fetch", "fresh", "second_fetched")),
+            *(control[name].eq(ending.control[name]) for name in ("write", "slot")),
         ]
 
         sums = self._run_sums(m, operation)
         supports = self._run_supports(m, operation)
 
         # Clock 4: combine; or show the first operand.
-        m.d.comb += self.o.valid.eq(outputs[3].any())
-        with m.If(outputs[3][0]):
-            m.d.comb += self.o.p.kind.eq(ItemKind.ITEM)
-        with m.Elif(marks[3] == Mark.END):
-            m.d.comb += self.o.p.kind.eq(ItemKind.END)
-        with m.Else():
-            m.d.comb += self.o.p.kind.eq(ItemKind.ABORT)
+        end_kind = Mux(ending.mark == Mark.END, ItemKind.END, ItemKind.ABORT)
+        m.d.comb += [
+            self.o.valid.eq(ending.shows | ending.marks),
+            self.o.p.kind.eq(Mux(ending.shows, ItemKind.ITEM, end_kind)),
+        ]
         lanes = {name: (SumLane, shape, leaf, self.o.p[name]) for name, (leaf, shape) in sums.items()}
         for k, (leaf, support) in enumerate(supports):
             lanes[f"extreme{k}"] = (ExtremeLane, support.shape, leaf, self.o.p.extremes[f"e{k}"])
