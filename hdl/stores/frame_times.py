@@ -5,21 +5,21 @@ and ``last_pixel`` become the times at which its first and its last pixel came i
 are, so frames that are skipped or cut leave no trace. They change in the same clock as the publisher's ``frame``.
 
 A strobe of the framer comes two clocks after its pixel, and a register is looked at one clock after the bus asked for
-it. So the counter lags by one clock, and a stamp is one less than what it was at the strobe: that is what software
-that reads ``time`` gets if the clock of its read is that of the pixel at the camera's port; 0 is the first clock after
-a reset.
+it. So the counter lags by one clock, and a stamp is what it was a clock before the strobe: that is what software that
+reads ``time`` gets if the clock of its read is that of the pixel at the camera's port; 0 is the first clock after a
+reset.
 
 ::
 
-    time --first--> [started] --last--> [ended first] --END, - 1--> first_pixel
-    time ---------------------last--> [ended last]  --END, - 1--> last_pixel
+    time -> [earlier] --first--> [started] --last--> [ended first] --END--> first_pixel
+            [earlier] ---------------------last--> [ended last]  --END--> last_pixel
 
 One frame that ended and is not decided is enough: frame k's ``END`` comes at most columns + 64 clocks after its last
 pixel (the framer's settling time), and from 16 x 16 pixels up the last pixel of frame k + 1 comes at least
 16 columns >= columns + 240 clocks after it. What is needed here is less: an ``END`` comes after its frame's ``last``
 strobe and not after the next one.
 
-Numbers: 6 registers of ``bits`` bits, each on its own or behind a sum with 1.
+Numbers: 7 registers of ``bits`` bits, no arithmetic but the counter's.
 
 Model: :func:`sim.models.frame_times.frame_times` is bit-exact.
 """
@@ -77,13 +77,13 @@ class FrameTimes(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        started = Signal.like(self.first_pixel)
+        earlier, started = Signal.like(self.time, init=self.time.init - 1), Signal.like(self.first_pixel)
         ended_first, ended_last = Signal.like(self.first_pixel), Signal.like(self.last_pixel)
-        m.d.sync += self.time.eq(self.time + 1)
+        m.d.sync += [self.time.eq(self.time + 1), earlier.eq(self.time)]
         with m.If(self.first):
-            m.d.sync += started.eq(self.time)
+            m.d.sync += started.eq(earlier)
         with m.If(self.last):
-            m.d.sync += [ended_first.eq(started), ended_last.eq(self.time)]
+            m.d.sync += [ended_first.eq(started), ended_last.eq(earlier)]
         with m.If(self.i_valid & (self.i_kind == ItemKind.END)):
-            m.d.sync += [self.first_pixel.eq(ended_first - 1), self.last_pixel.eq(ended_last - 1)]
+            m.d.sync += [self.first_pixel.eq(ended_first), self.last_pixel.eq(ended_last)]
         return m
