@@ -9,6 +9,7 @@ from sim.engine import StreamEngine, random_idle
 from sim.engine.sensor import RtlSensor
 from sim.results import Settings
 from tests.hdl.collisions import collided, promised
+from tests.hdl.test_corners import HEIGHT, WIDTH, corners_block, pixels, play, random_sequence
 from tests.hdl.test_segmentation import check_run, check_stack, run_frames
 from tests.patterns import directed, noise
 from tests.system.test_sensor import check, picture
@@ -46,6 +47,26 @@ def test_segmentation(garbage, columns, rows):
     for frame in directed().values():
         if frame.shape[0] <= rows and 4 < frame.shape[1] <= columns:
             check_run(run_frames(engine, [frame] * 2), engine.size, [frame] * 2)
+
+
+def test_segmentation_of_cut_frames(garbage):
+    engine = StreamEngine("segmentation", 16, 8)
+    engine.size = (16, 8)
+    random = np.random.default_rng(8)
+    for _ in range(60):
+        columns, rows = int(random.integers(6, 17)), int(random.integers(4, 9))
+        frames = list(noise(random, 6 * rows, columns, 0.5).reshape(6, rows, columns))
+        cuts = [int(random.integers(1, rows * columns)) if k % 2 else None for k in range(5)] + [None]
+        check_run(run_frames(engine, frames, cuts=cuts), engine.size, frames, cuts)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_corners(garbage, seed):
+    """Frames of all sizes, some cut, with other settings each, with gaps and without."""
+    frames, settings, cut = random_sequence(seed)
+    engine = StreamEngine(corners_block, WIDTH, HEIGHT)
+    idle = random_idle(sum(pixels(frames, cut)), 0.3, seed) if seed % 2 else None
+    play(engine, frames, settings, cut, idle)
 
 
 def test_sensor(garbage):
