@@ -17,13 +17,13 @@ To add a block, add one line to :data:`BLOCKS`.
 
 import argparse
 import importlib
-import os
 import pathlib
 import sys
 
 from amaranth import Const, Elaboratable, Value
-from amaranth.back import verilog
 from amaranth.lib import wiring
+
+from hdl.convert import convert
 
 __all__ = ["AVALON", "BLOCKS", "SYSTEM", "TOP", "build", "emit", "parts", "to_verilog", "words_of"]
 
@@ -138,8 +138,7 @@ class _Top(Elaboratable):
 
 def to_verilog(component, name):
     """Verilog of a component, as a module called ``name``."""
-    os.environ["AMARANTH_USE_YOSYS"] = "builtin"
-    return verilog.convert(_Top(component), name, emit_src=False, strip_internal_attrs=True)
+    return convert(_Top(component), name)
 
 
 def emit(name, width=640, height=480, **arguments):

@@ -56,9 +56,12 @@ class Arc(wiring.Component):
             m.d.sync += [register.eq(value) for register, value in zip(result, values, strict=True)]
             return result
 
-        bit = [bit ^ self.is_clear for bit in self.i]
-        threes = registers("threes", [bit[k] & bit[k - 15] & bit[k - 14] for k in range(16)], 1)
-        nines = registers("nines", [threes[k] & threes[k - 13] & threes[k - 10] for k in range(16)], 1)
+        bit = self.i ^ self.is_clear.replicate(16)
+        threes, nines = Signal(16, reset_less=True), Signal(16, reset_less=True)
+        m.d.sync += [
+            threes.eq(bit & bit.rotate_right(1) & bit.rotate_right(2)),
+            nines.eq(threes & threes.rotate_right(3) & threes.rotate_right(6)),
+        ]
         fours = [nines[k : k + 4] for k in range(0, 16, 4)]
         counts = registers("counts_4", [_count(*four) for four in fours], 3)
         found = registers("found_4", [Cat(four).any() for four in fours], 1)

@@ -34,19 +34,17 @@ from hdl.vision.delay import Delays
 
 __all__ = ["Score"]
 
+_ODD = 0xAAAA  # places
+
 
 def _windows(bit, is_bright, is_even, is_long):
-    """Whether all bits of a window are high, for each pair of windows with one core."""
-    high = [value ^ is_bright for value in bit]
-    pair = [high[q] & high[(q + 1) % 16] for q in range(1, 16, 2)]
-    windows = []
-    for k in range(8):
-        q = 2 * k + 1
-        before = Mux(is_long, high[q - 11], high[q - 9])
-        ends = Mux(is_even, pair[k] | before & high[q], before | high[q])
-        core = pair[k - 1] & pair[k - 2] & pair[k - 3] & pair[k - 4]
-        windows.append(core & (pair[k - 5] | ~is_long) & ends)
-    return windows
+    """At each odd place whether all bits of a window with that core are high; at even ones anything."""
+    high = bit ^ is_bright.replicate(16)
+    pair = high & high.rotate_right(1)
+    before = Mux(is_long, high.rotate_left(11), high.rotate_left(9))
+    ends = Mux(is_even, pair | before & high, before | high)
+    core = pair.rotate_left(2) & pair.rotate_left(4) & pair.rotate_left(6) & pair.rotate_left(8)
+    return core & (pair.rotate_left(10) | ~is_long.replicate(16)) & ends
 
 
 class Score(wiring.Component):
@@ -83,30 +81,29 @@ class Score(wiring.Component):
         def plane(place):
             return Cat(self.circle[k][place] for k in range(16))
 
-        def registers(name, values):
-            values = Cat(*values)
-            result = Signal(len(values), name=name, reset_less=True)
-            m.d.sync += result.eq(values)
+        def register(name, value):
+            result = Signal.like(value, name=name, reset_less=True)
+            m.d.sync += result.eq(value)
             return result
 
         bit, tied, is_bright, level = plane(7), Const(0xFFFF, 16), self.is_bright, []
         kind = Cat(self.is_even, self.is_long)
         for place in range(7, -1, -1):
             if place % 2:  # One pair of registers would have too many places to reach.
-                kind = registers(f"kind_{place}", kind)
-            windows = registers(f"windows_{place}", _windows(bit, is_bright, *kind))
-            is_bright = registers(f"is_bright_{place}", [is_bright])
-            bit, tied = registers(f"bit_{place}", bit), registers(f"tied_{place}", tied) if place < 7 else tied
+                kind = register(f"kind_{place}", kind)
+            windows = register(f"windows_{place}", _windows(bit, is_bright, *kind))
+            is_bright = register(f"is_bright_{place}", is_bright)
+            bit, tied = register(f"bit_{place}", bit), register(f"tied_{place}", tied) if place < 7 else tied
 
             found = Signal(name=f"found_{place}")
-            m.d.comb += found.eq(windows.any() ^ is_bright)
-            level.insert(0, delays.later(registers(f"level_{place}", [found]), 2 * place))
-            is_bright = registers(f"was_bright_{place}", [is_bright])
+            m.d.comb += found.eq((windows & _ODD).any() ^ is_bright)
+            level.insert(0, delays.later(register(f"level_{place}", found), 2 * place))
+            is_bright = register(f"was_bright_{place}", is_bright)
             if place:
-                still_tied = [was_tied & (value == found) for was_tied, value in zip(tied, bit, strict=True)]
+                still_tied = tied & (bit ^ ~found.replicate(16))
                 following = delays.later(plane(place - 1), 15 - 2 * place)
-                bit = registers(f"next_bit_{place - 1}", map(Mux, still_tied, following, bit))
-                tied = registers(f"next_tied_{place - 1}", still_tied)
+                bit = register(f"next_bit_{place - 1}", still_tied & following | ~still_tied & bit)
+                tied = register(f"next_tied_{place - 1}", still_tied)
 
         # On the side of a bright centre, centre - level - 1; on the other, level - centre - 1.
         difference = Signal(8)

@@ -83,12 +83,12 @@ def cached_verilog(name, width, height):
 
 
 def _runtime(recipe):
-    """Object files of Verilator's own runtime, shared by all builds with these flags."""
-    folder = OUT / "engine" / f"runtime-{digest(versions(recipe), recipe.command(), recipe.runtime)}"
+    """Folder of Verilator's own runtime, compiled, shared by all builds with these flags."""
+    folder = OUT / "engine" / f"runtime-{digest(versions(recipe), recipe.command(), recipe.runtime, recipe.level)}"
     with locked(folder) as scratch:
         if scratch is not None:
             compile_runtime(recipe, scratch)
-    return sorted(map(str, folder.glob("*.o")))
+    return folder
 
 
 def build_module(recipe, top, files, driver, product, place):

@@ -1,8 +1,8 @@
 """A Verilog module with its driver to machine code, in one folder: Verilator, then g++ on two units side by side.
 
 One unit has the driver and what runs in every clock, the other what runs once and so need not be optimised, which is
-most of the text. Verilator's own runtime takes longer to compile than a small module, so its objects are made apart,
-to be shared.
+most of the text. Verilator's own runtime takes longer to compile than a small module, and so does its header, so its
+objects and the header, compiled, are made apart, to be shared.
 """
 
 import dataclasses
@@ -19,6 +19,7 @@ __all__ = ["EngineError", "Recipe", "compile_module", "compile_runtime", "tool",
 _VERILATOR_FLAGS = shlex.split("--cc -O3 --x-assign fast --x-initial fast --no-assert -Wno-fatal --Mdir .")
 _COMPILER_FLAGS = shlex.split("-std=c++17 -fno-strict-aliasing -w -DVM_COVERAGE=0 -DVM_SC=0 -DVM_TIMING=0 -DVM_TRACE=0")
 _RUNTIME_LEVEL, _SLOW_LEVEL = "-O2", "-O0"
+_HEADER = "runtime.h"
 
 
 class EngineError(RuntimeError):
@@ -113,14 +114,21 @@ def _start(command, folder, **environment):
 
 
 def compile_runtime(recipe, folder):
-    """Make the objects of Verilator's runtime in a folder."""
-    sources = [f"{verilator_root()}/include/{name}.cpp" for name in recipe.runtime]
+    """Make the objects of Verilator's runtime in a folder, and its header for each level of optimisation."""
+    command = recipe.command()
+    objects = [[_RUNTIME_LEVEL, "-c", f"{verilator_root()}/include/{name}.cpp"] for name in recipe.runtime]
+    headers = []
+    for level in {recipe.level, _SLOW_LEVEL}:
+        header = folder / level / _HEADER
+        header.parent.mkdir()
+        header.write_text('#include "verilated.h"\n')
+        headers.append([level, "-x", "c++-header", str(header)])
     with open(folder / "build.log", "w") as log:
-        _wait(log, *(_start([*recipe.command(), _RUNTIME_LEVEL, "-c", source], folder) for source in sources))
+        _wait(log, *(_start([*command, *what], folder) for what in (*objects, *headers)))
 
 
 def compile_module(recipe, folder, top, files, driver, runtime, product):
-    """Make ``product`` of ``files``, which Verilator reads, the C++ file ``driver`` and the objects of ``runtime()``.
+    """Make ``product`` of ``files``, which Verilator reads, the C++ file ``driver`` and the runtime in the folder ``runtime()``.
 
     Raises
     ------
@@ -134,8 +142,12 @@ def compile_module(recipe, folder, top, files, driver, runtime, product):
         units = {"slow": slow, "fast": [driver, *(name for name in generated if name not in slow)]}
         for unit, names in units.items():
             (folder / f"{unit}.cc").write_text("".join(f'#include "{name}"\n' for name in names))
-        levels = {"fast": recipe.level, "slow": _SLOW_LEVEL}
-        command = recipe.command()
-        _wait(log, *(_start([*command, level, "-c", f"{unit}.cc"], folder) for unit, level in levels.items()))
-        link = [command[0], "-o", product, "fast.o", "slow.o", *runtime(), *recipe.linker, "-pthread"]
+        command, shared = recipe.command(), runtime()
+        compilations = [
+            [*command, level, "-include", str(shared / level / _HEADER), "-c", f"{unit}.cc"]
+            for unit, level in (("fast", recipe.level), ("slow", _SLOW_LEVEL))
+        ]
+        _wait(log, *(_start(compilation, folder) for compilation in compilations))
+        objects = sorted(map(str, shared.glob("*.o")))
+        link = [command[0], "-o", product, "fast.o", "slow.o", *objects, *recipe.linker, "-pthread"]
         _wait(log, _start(link, folder))
