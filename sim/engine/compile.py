@@ -128,7 +128,7 @@ def compile_runtime(recipe, folder):
 
 
 def compile_module(recipe, folder, top, files, driver, runtime, product):
-    """Make ``product`` of ``files``, which Verilator reads, the C++ file ``driver`` and the runtime in the folder ``runtime()``.
+    """Make ``product`` of ``files``, which Verilator reads, and the C++ file ``driver``, with what ``runtime()`` holds.
 
     Raises
     ------
