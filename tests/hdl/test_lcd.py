@@ -60,11 +60,11 @@ def of_start():
 
 
 @pytest.mark.parametrize("clock_hz, scale", [(1_000_000, 1), (50_000_000, 0.1)])
-def test_text(simulator, clock_hz, scale):
+def test_text(large_simulator, clock_hz, scale):
     """Written at once after the reset. Pauses are real with the slow clock and a tenth as long with the fast one."""
     text = list(written(TEXT, Op.WRITE))
     program = [(Op.READ, STATUS), *text, (Op.READ, STATUS), (Op.FINISH,), (Op.READ, STATUS), (Op.READ, ERRORS)]
-    captured = play(simulator, program, clock_hz=clock_hz, scale=scale)
+    captured = play(large_simulator, program, clock_hz=clock_hz, scale=scale)
     assert captured["lines"].tolist() == TEXT
     assert received(captured) == of_start() + bytes_of(text)
     assert captured["log"].tolist() == [IDLE | 1, DEPTH - len(text) << 8 | 1, IDLE, 0]

@@ -204,6 +204,7 @@ def test_fusesoc_simulation(package, tmp_path):
     assert status == 0 and "PASS: 21 words as they must be" in text, text
 
 
+@pytest.mark.long
 def test_fusesoc_simulation_would_fail(package, tmp_path):
     """One bit of a vertex is not as the testbench expects it."""
     copy = shutil.copytree(package, tmp_path / "ip")
