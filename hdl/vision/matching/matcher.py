@@ -40,7 +40,7 @@ class Matcher(wiring.Component):
         lanes -> unfold -> plane: points -> products -> search -> which points
                    divider -'                   '-----> tally -> rejected, notes -> verdict
 
-    Time: 310 clocks at most for a candidate, 4 for a mark. Marks keep their place in the order.
+    Time: 310 clocks at most for a candidate, 4 for a mark, a register included. Marks keep their place in the order.
 
     Memory: 302 rows of 49 bits, 32 points.
 
@@ -85,7 +85,8 @@ class Matcher(wiring.Component):
         step = Signal(words, reset_less=True)
         m.d.sync += [row.eq(fetched.data), step.eq(row)]
 
-        rejected = Signal()
+        rejected, tells = Signal(), Signal()
+        m.d.sync += self.o.valid.eq(tells)
         with m.FSM(name="matcher"):
             with m.State("IDLE"):
                 m.d.sync += place.eq(self.place)
@@ -94,10 +95,10 @@ class Matcher(wiring.Component):
                         m.d.sync += counter.eq(1)
                         m.next = "RUN"
                     with m.Else():
-                        m.d.comb += [self.o.valid.eq(1), self.take.eq(1)]
+                        m.d.comb += [tells.eq(1), self.take.eq(1)]
             with m.State("RUN"):
                 m.d.sync += counter.eq(counter + 1)
-                m.d.comb += self.o.valid.eq(step.report & ~rejected)
+                m.d.comb += tells.eq(step.report & ~rejected)
                 with m.If(rejected | step.report):
                     m.d.sync += counter.eq(0)
                     m.next = "LEAVE"
@@ -160,10 +161,15 @@ class Matcher(wiring.Component):
                 | step.verdict & ~(by_ac | by_bd)
             ),
             turn.eq(Mux(by_ac, Cat(0, bd_left), Cat(1, ~ac_left))),
-            self.o.p.kind.eq(self.kind),
-            *(self.o.p[f"v{k + 1}"].eq(plane.last[3 - k]) for k in range(4)),
-            self.o.p.box_min.eq(lanes.box_min),
-            self.o.p.box_max.eq(lanes.box_max),
-            self.o.p.area.eq(lanes.result_area),
-            self.o.p.gap_area.eq(lanes.result_gap_area),
+        ]
+        # Registers: who takes a marker should not wait for what rejects it.
+        told = Signal(self.o.p.shape(), reset_less=True)
+        m.d.comb += self.o.p.eq(told)
+        m.d.sync += [
+            told.kind.eq(self.kind),
+            *(told[f"v{k + 1}"].eq(plane.last[3 - k]) for k in range(4)),
+            told.box_min.eq(lanes.box_min),
+            told.box_max.eq(lanes.box_max),
+            told.area.eq(lanes.result_area),
+            told.gap_area.eq(lanes.result_gap_area),
         ]
