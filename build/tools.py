@@ -13,7 +13,7 @@ __all__ = ["ToolError", "ecppack", "nextpnr_ecp5", "version", "yosys"]
 
 
 #: Seconds after which a tool is stopped: a router that finds no way would go on for ever.
-PATIENCE = 1800
+PATIENCE = 3600
 
 
 class ToolError(Exception):

@@ -20,10 +20,6 @@ PART = ("--85k", "--package", "CABGA381", "--speed", "6")
 ROUTER = ("--router", "router2")
 
 
-#: How much the placer cares for slow paths: three times as much as it would by itself, else block RAMs get far away.
-TIMING_WEIGHT = ("--placer-heap-timingweight", 30)
-
-
 def netlist(top, files, folder):
     """Map the Verilog ``files`` in ``folder`` to the chip's cells: ``TOP.json``."""
     shutil.copy(_HERE / "order_map.v", folder)
@@ -43,7 +39,7 @@ def netlist(top, files, folder):
     file.write_text(json.dumps(cells))
 
 
-def place_and_route(top, sources, folder, *, target_mhz, seed=1):
+def place_and_route(top, sources, folder, *, target_mhz, timing_weight=10, seed=1):
     """Speed and size of a design behind registers.
 
     Parameters
@@ -56,6 +52,9 @@ def place_and_route(top, sources, folder, *, target_mhz, seed=1):
         Where to work: it is made, and keeps the logs.
     target_mhz : float
         What nextpnr strives for; to miss it is no error.
+    timing_weight : int
+        How much the placer cares for slow paths; 10 is its own default. With more, block RAMs stay nearer, but a full
+        design may be so dense that no way is found through it.
     seed : int
         Of the placement: another one gives a few per cent more or less.
 
@@ -79,7 +78,7 @@ def place_and_route(top, sources, folder, *, target_mhz, seed=1):
     nextpnr_ecp5(
         [
             *(*PART, *ROUTER, "--json", "shell.json", "--report", "report.json", "--freq", target_mhz, "--seed", seed),
-            *("--timing-allow-fail", "--lpf-allow-unconstrained", *TIMING_WEIGHT),
+            *("--timing-allow-fail", "--lpf-allow-unconstrained", "--placer-heap-timingweight", timing_weight),
         ],
         folder,
     )

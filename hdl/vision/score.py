@@ -34,11 +34,11 @@ from hdl.vision.delay import Delays
 
 __all__ = ["Score"]
 
-_ODD = 0xAAAA  # places
+_ODD = 0xAAAA  # All windows are in these q's; those of the even ones are not built.
 
 
 def _windows(bit, is_bright, is_even, is_long):
-    """At each odd place whether all bits of a window with that core are high; at even ones anything."""
+    """For each q whether all bits of a window with its core are high."""
     high = bit ^ is_bright.replicate(16)
     pair = high & high.rotate_right(1)
     before = Mux(is_long, high.rotate_left(11), high.rotate_left(9))

@@ -36,8 +36,8 @@ def played(monkeypatch, tmp_path):
         asked.append((top, sorted(sources)))
         return AREAS[top]
 
-    def place_and_route(top, sources, folder, *, target_mhz, seed):
-        asked.append((top, sorted(sources), target_mhz, seed))
+    def place_and_route(top, sources, folder, *, target_mhz, timing_weight, seed):
+        asked.append((top, sorted(sources), target_mhz, timing_weight, seed))
         return PLACED | {"fmax_mhz": PLACED["fmax_mhz"] if top == "rasterpose" else 61.25}
 
     monkeypatch.setattr(command, "estimate", estimate)
@@ -60,7 +60,7 @@ def words(text):
 def test_both_families(played, tmp_path, capsys):
     status, result = run(tmp_path, "--seed", "5")
     assert status == 0 and [one[0] for one in played] == [*AREAS, "rasterpose", "rasterpose_system"]
-    assert [one[2:] for one in played[2:]] == [(150, 5), (60, 5)]
+    assert [one[2:] for one in played[2:]] == [(150, 30, 5), (60, 10, 5)]
     assert result["kind"] == "estimates by open tools; Quartus was not run"
     family = result["cyclone4e"]
     assert list(family["blocks"]) == ["cpu", "sensor.grey", "wiring"]  # The largest first; parts of a name together.
