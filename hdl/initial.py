@@ -14,9 +14,13 @@ import re
 
 __all__ = ["with_loops"]
 
-_INITIAL = re.compile(r"^  initial begin\n((?:    [^\n]+\[\d+\] = [^\n]+;\n)+)  end\n", re.MULTILINE)
-_WORD = re.compile(r"    (\S+) ?\[(\d+)\] = ([^\n]+);\n")
+# Yosys writes a block for each memory; a name that needs a backslash ends with a space.
+_INITIAL = re.compile(
+    r"^  initial begin\n(    (\S+ ?)\[\d+\] = [^\n]+;\n(?:    \2\[\d+\] = [^\n]+;\n)*)  end\n", re.MULTILINE
+)
+_WORD = re.compile(r"\[(\d+)\] = ([^\n]+);\n")
 
+_AROUND = "\\ "  # what an escaped name has before and behind it
 _FEW = 4  # Fewer stay lines.
 _MOST = 4096  # Quartus takes a loop of more than 5,000 for one without an end.
 
@@ -27,23 +31,22 @@ def with_loops(text):
 
 
 def _block(found):
-    words = [(name, int(place), value) for name, place, value in _WORD.findall(found[1])]
-    name = words[0][0]
-    lines, has_loop = [], False
-    # Of words that follow each other the difference is the same.
-    runs = itertools.groupby(enumerate(words), lambda word: (word[1][0], word[1][1] - word[0], word[1][2]))
-    for (_, _, value), run in runs:
-        places = [place for _, (_, place, _) in run]
-        for at in range(0, len(places), _MOST):
-            part = places[at : at + _MOST]
-            if len(part) < _FEW:
-                lines += [f"    {name} [{place}] = {value};\n" for place in part]
-                continue
-            has_loop = True
-            # As many bits as a place has: lint tools want no more.
-            word = f"word$[{max(part[-1].bit_length(), 1) - 1}:0]"
-            lines.append(
-                f"    for (word$ = {part[0]}; word$ < {part[-1] + 1}; word$ = word$ + 1) {name} [{word}] = {value};\n"
-            )
-    label = f" : \\{name.lstrip(chr(92))}$begins \n    integer word$;" if has_loop else ""
-    return f"  initial begin{label}\n{''.join(lines)}  end\n"
+    name, words = found[2], [(int(place), value) for place, value in _WORD.findall(found[1])]
+    # Places that follow each other differ from their numbers in the block by the same.
+    runs = itertools.groupby(enumerate(words), lambda item: (item[1][0] - item[0], item[1][1]))
+    parts = []
+    for (_, value), run in runs:
+        places = [place for _, (place, _) in run]
+        parts += [(places[at : at + _MOST], value) for at in range(0, len(places), _MOST)]
+    lines = "".join(_lines(name, *part) for part in parts)
+    label = f" : \\{name.strip(_AROUND)}$begins \n    integer word$;" if "for (word$" in lines else ""
+    return f"  initial begin{label}\n{lines}  end\n"
+
+
+def _lines(name, places, value):
+    if len(places) < _FEW:
+        return "".join(f"    {name}[{place}] = {value};\n" for place in places)
+    # As many bits as a place has: lint tools want no more.
+    first, last = places[0], places[-1]
+    word = f"word$[{last.bit_length() - 1}:0]"
+    return f"    for (word$ = {first}; word$ < {last + 1}; word$ = word$ + 1) {name}[{word}] = {value};\n"
