@@ -39,7 +39,7 @@ def netlist(top, files, folder):
     file.write_text(json.dumps(cells))
 
 
-def place_and_route(top, sources, folder, *, target_mhz, timing_weight=10, seed=1):
+def place_and_route(top, sources, folder, *, target_mhz, timing_weight, seed=1):
     """Speed and size of a design behind registers.
 
     Parameters

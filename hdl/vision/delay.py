@@ -85,7 +85,7 @@ class Delays:
                 m.d.sync += [delayed.eq(value) for value, delayed in lanes]
             elif lanes:
                 # The widest first, so that words of 8 and 16 bits do not straddle those of a simulator.
-                lanes = sorted(lanes, key=lambda lane: -len(lane[1]))
+                lanes = sorted(lanes, key=lambda lane: len(lane[1]), reverse=True)
                 values, delayed = (Cat(*side) for side in zip(*lanes, strict=True))
                 delay = Delay(width=len(values), steps=steps)
                 m.submodules[f"delay_{steps}"] = delay

@@ -50,6 +50,11 @@ class Recipe:
     runtime: tuple = ("verilated", "verilated_threads")
     level: str = "-O1"
 
+    @property
+    def levels(self):
+        """How much each of the two units is optimised."""
+        return {"fast": self.level, "slow": _SLOW_LEVEL}
+
     def command(self):
         """g++ with everything but what to do."""
         root = verilator_root()
@@ -118,7 +123,7 @@ def compile_runtime(recipe, folder):
     command = recipe.command()
     objects = [[_RUNTIME_LEVEL, "-c", f"{verilator_root()}/include/{name}.cpp"] for name in recipe.runtime]
     headers = []
-    for level in {recipe.level, _SLOW_LEVEL}:
+    for level in set(recipe.levels.values()):
         header = folder / level / _HEADER
         header.parent.mkdir()
         header.write_text('#include "verilated.h"\n')
@@ -145,7 +150,7 @@ def compile_module(recipe, folder, top, files, driver, runtime, product):
         command, shared = recipe.command(), runtime()
         compilations = [
             [*command, level, "-include", str(shared / level / _HEADER), "-c", f"{unit}.cc"]
-            for unit, level in (("fast", recipe.level), ("slow", _SLOW_LEVEL))
+            for unit, level in recipe.levels.items()
         ]
         _wait(log, *(_start(compilation, folder) for compilation in compilations))
         objects = sorted(map(str, shared.glob("*.o")))
