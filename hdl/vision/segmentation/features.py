@@ -27,7 +27,7 @@ class Features(wiring.Component):
 
     Throughput: one part of an operation a clock: load, merge, finish, run or mark; see :class:`Schedule`.
 
-    Latency: 9 clocks from a finishing operation to its component when the queue is empty.
+    Latency: 10 clocks from a finishing operation to its component when the queue is empty.
 
     Members
     -------

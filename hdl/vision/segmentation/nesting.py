@@ -9,7 +9,7 @@ A decision must be made before the next step comes, so it is made of a few bits.
 worked out three clocks later, in :mod:`hdl.vision.segmentation.labelling`.
 """
 
-from amaranth import Module, Mux, Signal, unsigned
+from amaranth import Cat, Module, Mux, Signal, unsigned
 from amaranth.lib import data, enum, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -21,7 +21,7 @@ __all__ = ["DECISION", "Mark", "Nesting", "Owner"]
 
 
 class Owner(enum.Enum, shape=unsigned(2)):
-    """Where the component of the run in hand is."""
+    """Where the component of the run in hand is; a bit for each place."""
 
     NONE = 0  #: it has touched no run of the row above yet
     TOP = 1  #: the innermost open component
@@ -70,12 +70,12 @@ DECISION = data.StructLayout(
     }
 )
 
-#: An open component. The numbers, those of :class:`RunMarks`, are void while ``has_run`` is 0.
+#: An open component. Its runs, as :class:`RunMarks` names them, are void while ``has_run`` is 0.
 _DESCRIPTOR = data.StructLayout(
     {
         "has_run": 1,  #: in the row in hand
-        "earliest": range(MARK_HEADS + 1),  #: its first run there
-        "latest": range(MARK_HEADS + 1),  #: its last run so far
+        "earliest": MARK_HEADS,  #: its first run there
+        "latest": MARK_HEADS,  #: its last run so far
     }
 )
 
@@ -87,7 +87,7 @@ class Nesting(wiring.Component):
     are still open are finished one every second clock, while row 0 of the next frame may already be scanned: they
     take at most as many clocks as a row has columns.
 
-    Memory: 2 x width/2 marks of runs, width/4 + 2 stacked words of 8 bits.
+    Memory: 2 x width/2 marks of runs, width/4 + 2 stacked words of 10 bits.
 
     Members
     -------
@@ -117,97 +117,96 @@ class Nesting(wiring.Component):
         entry = data.StructLayout({"descriptor": _DESCRIPTOR, "hollow": 1})
         m.submodules.stack = stack = Stack(shape=entry, depth=self._width // 4 + 2)
         m.d.comb += runs.late.eq(self.late)
-        step, o, above = self.step, self.o, runs.run
+        step, o, above = self.step, self.o, runs.run  # ``above.first`` until its component is pushed
 
-        # The end of a run of the row above comes from the scan, or, after the last row, every second clock by itself.
+        # The end of a run of the row above comes from the scan, or, after the last row, every second clock by itself:
+        # while the scan is in row 0, where it ends nothing and touches nothing.
         flushing, flush_tick = Signal(), Signal()
         flush_end = Signal()
         m.d.comb += [
             flush_end.eq(flushing & flush_tick & ~runs.more),
-            o.advance.eq(Mux(flushing, flush_tick & runs.some, step.ends_above)),
+            o.advance.eq(step.ends_above | flushing & flush_tick & runs.some),
             o.ends_run.eq(step.ends_run),
-            o.touch.eq(step.touch & ~flushing),
+            o.touch.eq(step.touch),
             runs.advance.eq(o.advance),
+            runs.touch.eq(o.touch),
         ]
 
-        # 1. A first run pushes its component once it is touched or over; touching joins it to that of the run in hand.
+        # The loop from a decision to the next limits the clock, so each is written out in what is in registers, using
+        # that a run of either row never ends beside one of the other without a touch.
         top, hand = Signal(_DESCRIPTOR), Signal(_DESCRIPTOR)
-        owner, pushed = Signal(Owner), Signal()
-        top_1, hand_1, owner_1 = Signal(_DESCRIPTOR), Signal(_DESCRIPTOR), Signal(Owner)
-        touch, enter = o.touch, Signal()
+        owned_by_top, owned_by_hand = Signal(), Signal()  # the run in hand; not both
+        touch, first, last = o.touch, above.first, above.last
+
+        # 1. A first run pushes its component once it is touched or over; touching joins it to that of the run in hand.
+        now_by_top, now_by_hand = Signal(), Signal()
         m.d.comb += [
-            enter.eq((touch | o.advance) & above.first & ~pushed),
-            o.owner.eq(owner),
-            o.whole.eq(enter & o.advance & above.last),
-            o.push.eq(enter & ~o.whole),
+            o.owner.eq(Cat(owned_by_top, owned_by_hand)),
+            o.whole.eq(first & last & o.advance),
+            o.push.eq(first & (touch & ~o.advance | o.advance & ~last)),
             # What has the earliest run of the row keeps its slot, which is in that run's record.
-            o.joined.eq(~enter & touch & (owner == Owner.HAND)),
-            o.from_hand.eq(o.push & touch & (owner == Owner.HAND) | o.joined & ~top.has_run),
-            o.from_above.eq(o.push & ~(touch & (owner != Owner.NONE))),
-            o.hand_from_above.eq(o.whole & touch & (owner == Owner.NONE)),
+            o.joined.eq(touch & ~first & owned_by_hand),
+            o.from_hand.eq(touch & owned_by_hand & (o.push | ~first & ~top.has_run)),
+            o.from_above.eq(o.push & ~(touch & (owned_by_top | owned_by_hand))),
+            o.hand_from_above.eq(o.whole & touch & ~owned_by_top & ~owned_by_hand),
             o.latest_from_hand.eq(o.joined & top.has_run & hand.has_run),
             stack.push.eq(o.push),
             stack.pushed.descriptor.eq(top),
-            stack.pushed.hollow.eq(touch & (owner == Owner.TOP)),
+            stack.pushed.hollow.eq(touch & owned_by_top),
             runs.unfirst.eq(o.latest_from_hand),
-            top_1.eq(Mux(o.from_hand, hand, top)),
-            hand_1.eq(hand),
-            owner_1.eq(Mux(touch & ~o.whole, Owner.TOP, Mux(o.hand_from_above, Owner.HAND, owner))),
+            runs.unfirst_run.eq(hand.earliest),
+            now_by_top.eq(owned_by_top | touch & ~o.whole),
+            now_by_hand.eq(Mux(touch, o.whole & ~owned_by_top, owned_by_hand)),
+            o.owner_now.eq(Cat(now_by_top, now_by_hand)),
         ]
-        with m.If(o.from_above):
-            m.d.comb += top_1.has_run.eq(0)
-        with m.If(o.latest_from_hand):
-            m.d.comb += top_1.latest.eq(hand.latest)
-        with m.If(o.hand_from_above):
-            m.d.comb += hand_1.has_run.eq(0)
-        m.d.comb += runs.unfirst_index.eq(hand.earliest)
 
         # 2. A run that ends is added to its component, or becomes one.
-        grown = Signal(_DESCRIPTOR)
-        top_2, hand_2, owner_2 = Signal(_DESCRIPTOR), Signal(_DESCRIPTOR), Signal(Owner)
         m.d.comb += [
-            grown.eq(Mux(owner_1 == Owner.TOP, top_1, hand_1)),
-            top_2.eq(top_1),
-            hand_2.eq(hand_1),
-            owner_2.eq(Mux(o.ends_run, Owner.NONE, owner_1)),
-            o.owner_now.eq(owner_1),
-            o.grown_has_run.eq(grown.has_run),
-            o.first.eq((owner_1 == Owner.NONE) | ~grown.has_run),
-            o.last.eq((owner_1 != Owner.TOP) | o.leave),
+            o.grown_has_run.eq(
+                owned_by_top & top.has_run | owned_by_hand & hand.has_run | touch & ~first & top.has_run
+            ),
+            o.first.eq(~o.grown_has_run),
+            o.last.eq(~now_by_top | o.leave),
             runs.append.eq(o.ends_run),
             runs.appended.first.eq(o.first),
             runs.appended.last.eq(o.last),
         ]
-        with m.If(o.ends_run):
-            for place, extended in ((Owner.TOP, top_2), (Owner.HAND, hand_2)):
-                with m.If(owner_1 == place):
-                    m.d.comb += [
-                        extended.has_run.eq(1),
-                        extended.earliest.eq(Mux(grown.has_run, grown.earliest, runs.index)),
-                        extended.latest.eq(runs.index),
-                    ]
+        top_2, hand_2 = Signal(_DESCRIPTOR), Signal(_DESCRIPTOR)
+        m.d.comb += [
+            top_2.eq(Mux(o.from_hand, hand, top)),
+            hand_2.eq(hand),
+        ]
+        with m.If(o.from_above):
+            m.d.comb += top_2.has_run.eq(0)
+        with m.If(o.latest_from_hand):
+            m.d.comb += top_2.latest.eq(hand.latest)
+        with m.If(o.hand_from_above):
+            m.d.comb += hand_2.has_run.eq(0)
+        for grows, extended in ((now_by_top, top_2), (now_by_hand, hand_2)):
+            with m.If(o.ends_run & grows):
+                m.d.comb += [extended.has_run.eq(1), extended.latest.eq(runs.index)]
+                with m.If(~o.grown_has_run):
+                    m.d.comb += extended.earliest.eq(runs.index)
 
         # 3. The last run of a component in the row above takes it from the stack. The run in hand cannot end here
         # without having touched it, so what becomes complete or last here has no run that ends.
+        untouched = ~touch & ~owned_by_top
         m.d.comb += [
-            o.pop.eq(o.advance & above.last & ~o.whole),
+            o.pop.eq(o.advance & last & ~first),
             stack.pop.eq(o.pop),
             o.leave.eq(o.pop & ~stack.below.hollow),
-            o.to_hand.eq(o.leave & (owner_2 == Owner.TOP)),
-            o.set_last.eq(o.leave & (owner_2 != Owner.TOP) & top_2.has_run & ~o.ends_run),
-            o.finish.eq(o.leave & (owner_2 != Owner.TOP) & ~top_2.has_run),
+            o.to_hand.eq(o.leave & ~untouched & ~o.ends_run),
+            o.set_last.eq(o.leave & untouched & top.has_run & ~o.ends_run),
+            o.finish.eq(o.leave & untouched & ~top.has_run),
             runs.set_last.eq(o.set_last),
-            runs.last_index.eq(top.latest),
+            runs.last_run.eq(top.latest),
         ]
-        m.d.sync += [top.eq(top_2), hand.eq(hand_2), owner.eq(owner_2)]
-        with m.If(o.leave):
-            m.d.sync += top.eq(stack.below.descriptor)
-        with m.If(o.to_hand):
-            m.d.sync += [hand.eq(top_2), owner.eq(Owner.HAND)]
-        with m.If(o.advance):
-            m.d.sync += pushed.eq(0)
-        with m.Elif(enter):
-            m.d.sync += pushed.eq(1)
+        m.d.sync += [
+            top.eq(Mux(o.leave, stack.below.descriptor, top_2)),
+            hand.eq(Mux(o.to_hand, top_2, hand_2)),
+            owned_by_top.eq(now_by_top & ~o.ends_run & ~o.to_hand),
+            owned_by_hand.eq(now_by_hand & ~o.ends_run | o.to_hand),
+        ]
 
         # Ends of rows and frames, good and bad.
         m.d.comb += [
@@ -228,10 +227,9 @@ class Nesting(wiring.Component):
         with m.If(o.last_row):
             m.d.sync += [flushing.eq(1), flush_tick.eq(1)]
         with m.If(self.cut):
-            m.d.sync += owner.eq(Owner.NONE)
+            m.d.sync += [owned_by_top.eq(0), owned_by_hand.eq(0)]
             with m.If(~flushing):
                 m.d.comb += stack.clear.eq(1)
-                m.d.sync += pushed.eq(0)
                 with m.If(self.cut_row):
                     m.d.comb += o.mark.eq(Mark.ABORT)
         return m

@@ -3,7 +3,7 @@
 The marks, which decide what a step does, and the slots, which are needed three clocks later, are kept apart.
 """
 
-from amaranth import Cat, Module, Mux, Shape, Signal
+from amaranth import Cat, Module, Mux, Shape, Signal, Value
 from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
@@ -56,6 +56,8 @@ class _Reader(wiring.Component):
     read : In(shape)
         What it has read. It is registered here at once.
     run : Out(shape)
+    clear : In(shape)
+        Bits of ``run`` that are cleared, unless it is followed by another.
     """
 
     def __init__(self, *, width, shape, heads):
@@ -69,6 +71,7 @@ class _Reader(wiring.Component):
                 "address": Out(self._number),
                 "read": In(shape),
                 "run": Out(shape),
+                "clear": In(shape),
             }
         )
 
@@ -80,7 +83,7 @@ class _Reader(wiring.Component):
         read_run = Signal(self._shape, reset_less=True)
         next_ahead = Signal.like(ahead)  # one more, so that ``advance`` has only to choose
         m.d.comb += self.address.eq(Mux(self.advance, next_ahead, ahead))
-        m.d.sync += read_run.eq(self.read)
+        m.d.sync += [read_run.eq(self.read), self.run.eq(Value.cast(self.run) & ~Value.cast(self.clear))]
         size = Shape.cast(self._shape).width
         with m.If(self.advance):
             m.d.sync += [
@@ -106,8 +109,8 @@ class RunMarks(wiring.Component):
     A run of the row in hand is appended with its marks. Later it may lose ``first`` (``unfirst``) or gain ``last``
     (``set_last``). ``run`` has the marks of the run of the row above that is next; ``advance`` steps to the following.
 
-    The marks of the first four runs of a row are in registers, so here runs are named by their number or, from 4 on, 4.
-    The memory has time to be told three clocks later, and with all numbers, through ``late``.
+    The marks of the first four runs of a row are in registers, so here runs are named by a bit for each of these, and
+    all others by none. The memory has time to be told three clocks later, and with all numbers, through ``late``.
 
     All inputs may come in the same clock, also with ``turn``, except that neither ``append`` nor ``unfirst`` may come
     in the clock after both came together, unless the appended run is one of the first of its row.
@@ -117,14 +120,16 @@ class RunMarks(wiring.Component):
     Members
     -------
     append : In(1), appended : In(MARKS)
-    index : Out(range(5))
+    index : Out(4)
         The run that is appended next.
-    unfirst, set_last : In(1), unfirst_index, last_index : In(range(5))
+    unfirst, set_last : In(1), unfirst_run, last_run : In(4)
     turn : In(1)
         The row in hand ends.
     restart : In(1)
         The row in hand begins anew.
     advance : In(1)
+    touch : In(1)
+        ``run`` is touched: from now on it does not count as first any more.
     run : Out(MARKS)
     some, more : Out(1)
         There are runs of the row above that are not yet advanced over; there are two or more.
@@ -134,19 +139,19 @@ class RunMarks(wiring.Component):
     def __init__(self, *, width):
         self._width = width
         self._number = number_shape(width)
-        short = range(MARK_HEADS + 1)
         super().__init__(
             {
                 "append": In(1),
                 "appended": In(MARKS),
-                "index": Out(short),
+                "index": Out(MARK_HEADS, init=1),
                 "unfirst": In(1),
-                "unfirst_index": In(short),
+                "unfirst_run": In(MARK_HEADS),
                 "set_last": In(1),
-                "last_index": In(short),
+                "last_run": In(MARK_HEADS),
                 "turn": In(1),
                 "restart": In(1),
                 "advance": In(1),
+                "touch": In(1),
                 "run": Out(MARKS),
                 "some": Out(1),
                 "more": Out(1),
@@ -164,29 +169,34 @@ class RunMarks(wiring.Component):
         heads = Signal(data.ArrayLayout(MARKS, MARK_HEADS))
         for k in range(MARK_HEADS):
             m.d.comb += reader.heads[k].eq(heads[k])
-            with m.If(self.append & (self.index == k)):
+            with m.If(self.append & self.index[k]):
                 m.d.comb += reader.heads[k].eq(self.appended)
-            with m.If(self.unfirst & (self.unfirst_index == k)):
+            with m.If(self.unfirst & self.unfirst_run[k]):
                 m.d.comb += reader.heads[k].first.eq(0)
-            with m.If(self.set_last & (self.last_index == k)):
+            with m.If(self.set_last & self.last_run[k]):
                 m.d.comb += reader.heads[k].last.eq(1)
         m.d.sync += heads.eq(reader.heads)
-        m.d.comb += [reader.turn.eq(self.turn), reader.advance.eq(self.advance), self.run.eq(reader.run)]
+        m.d.comb += [
+            reader.turn.eq(self.turn),
+            reader.advance.eq(self.advance),
+            reader.clear.first.eq(self.touch),
+            self.run.eq(reader.run),
+        ]
         self._remember(m, reader, row)
 
         with m.If(self.advance):
             m.d.sync += [remaining.eq(remaining - 1), self.some.eq(remaining > 1), self.more.eq(remaining > 2)]
         with m.If(self.append):
-            m.d.sync += [count.eq(count + 1), self.index.eq(Mux(self.index == MARK_HEADS, MARK_HEADS, self.index + 1))]
+            m.d.sync += [count.eq(count + 1), self.index.eq(self.index << 1)]
         with m.If(self.turn):
             m.d.sync += [
                 remaining.eq(count + self.append),
-                self.some.eq((self.index != 0) | self.append),
-                self.more.eq((self.index > 1) | (self.index == 1) & self.append),
+                self.some.eq(~self.index[0] | self.append),
+                self.more.eq(~self.index[:2].any() | self.index[1] & self.append),
                 row.eq(~row),
             ]
         with m.If(self.turn | self.restart):
-            m.d.sync += [count.eq(0), self.index.eq(0)]
+            m.d.sync += [count.eq(0), self.index.eq(1)]
         return m
 
     def _remember(self, m, reader, row):

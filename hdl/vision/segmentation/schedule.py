@@ -8,7 +8,7 @@ issue is to look how long ago the last parts were issued.
 
 ::
 
-    operation -> | | -> compared with those before -> queue -> part, issued or waiting
+    operation -> | | -> compared with those before -> | | -> queue -> part, issued or waiting
 """
 
 from amaranth import Array, Cat, Module, Mux, Signal
@@ -92,7 +92,7 @@ class Schedule(wiring.Component):
     issued four clocks before. (If the last part wrote it, it is in the accumulator, or is the slot that goes.) So runs
     of one component can follow each other every fourth clock, with others between, as they can come in rows of more
     than three columns. More than four clocks would be too many.
-    Latency: 4 clocks when nothing waits.
+    Latency: 5 clocks when nothing waits.
 
     Members
     -------
@@ -185,13 +185,16 @@ class Schedule(wiring.Component):
         new, valid = Signal(self._layout, reset_less=True), Signal()
         arrived, arrived_order = Signal(self._queued), Signal(_ORDER)
         m.d.sync += [new.eq(self.i), valid.eq(self.i_valid)]
+        compared, compared_order = (Signal.like(value, reset_less=True) for value in (arrived, arrived_order))
+        compared_valid = Signal()
+        m.d.sync += [compared.eq(arrived), compared_order.eq(arrived_order), compared_valid.eq(valid)]
         m.d.comb += [
-            order.w_en.eq(valid),
-            order.w_data.eq(arrived_order),
-            queue.w_en.eq(valid & order.w_rdy),
-            queue.w_data.eq(arrived),
+            order.w_en.eq(compared_valid),
+            order.w_data.eq(compared_order),
+            queue.w_en.eq(compared_valid & order.w_rdy),
+            queue.w_data.eq(compared),
         ]
-        m.d.sync += self.overflow.eq(valid & ~order.w_rdy)
+        m.d.sync += self.overflow.eq(compared_valid & ~order.w_rdy)
 
         # The last three parts: that they wrote, and which slot. If the last wrote, its slot is the one that is held.
         held = Signal(range(self._depth))  # the slot that was loaded, shown or written last

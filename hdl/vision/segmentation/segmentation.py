@@ -31,7 +31,7 @@ class Segmentation(wiring.Component):
     of three columns, a clock more a row, and an endless series of tiny ones (of one row and up to 16 columns, or up to
     4 x 8, 5 x 4 and 6 x 2) a pause of a few clocks a frame, because every frame has an END.
     A narrower frame must not come before the one before is flushed: W + 16 clocks after its last pixel, which the
-    framer sees to. Latency: 16 clocks from the step that ends a component to its report.
+    framer sees to. Latency: 17 clocks from the step that ends a component to its report.
 
     Memory at 640 x 480: 640 bits of pixels, 8 kbit of marks and slots of runs, 5 kbit of stacks, 3 kbit of slot numbers
     and 328 x 487 bits of features.
