@@ -28,5 +28,5 @@ def simulator(request):
 
 @pytest.fixture(params=["verilator", pytest.param("icarus", marks=pytest.mark.long)])
 def large_simulator(request):
-    """The same for what takes Icarus a minute or more, and so runs on it with ``make exhaustive`` alone."""
+    """The same for what takes Icarus long, or has others of its block beside it: there `make exhaustive` runs it."""
     return _usable(request.param)

@@ -6,6 +6,7 @@ objects and the header, compiled, are made apart, to be shared.
 """
 
 import dataclasses
+import functools
 import os
 import pathlib
 import shlex
@@ -85,6 +86,7 @@ def tool(name, remedy):
     return path
 
 
+@functools.cache
 def versions(recipe):
     """What the two tools say of themselves."""
     programs = recipe.verilate("", ())[0], recipe.command()[0]

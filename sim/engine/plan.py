@@ -9,7 +9,7 @@ import dataclasses
 
 import numpy as np
 
-__all__ = ["Captured", "Plan", "Run", "junk", "make_plan", "random_idle"]
+__all__ = ["Captured", "Plan", "Run", "make_plan", "random_idle"]
 
 
 @dataclasses.dataclass
@@ -49,12 +49,6 @@ def random_idle(count, chance, seed, longest=8):
     """Idle clocks before each of ``count`` beats: none, or with probability ``chance`` 1 to ``longest``."""
     random = np.random.default_rng(seed)
     return np.where(random.random(count) < chance, random.integers(1, longest + 1, count), 0)
-
-
-def junk(clock):
-    """Payload that is driven in clocks without a beat (uint64): a block that looks at it must be caught."""
-    value = (np.asarray(clock, dtype=np.uint64) + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
-    return value ^ value >> np.uint64(29)
 
 
 def _beats(port, given):

@@ -9,8 +9,7 @@ import cocotb
 import numpy as np
 from cocotb.triggers import Timer
 
-from sim.engine.plan import junk
-from tests.hdl.tb_stream import load_plan
+from tests.hdl.tb_stream import junk, load_plan
 
 
 def _known(handle):

@@ -8,8 +8,7 @@ import cocotb
 import numpy as np
 from cocotb.triggers import Timer
 
-from sim.engine.plan import junk
-from tests.hdl.tb_stream import load_plan
+from tests.hdl.tb_stream import junk, load_plan
 
 _REQUEST = ("valid", "write", "burst", "address", "select", "write_data")
 _UNKNOWN = -1

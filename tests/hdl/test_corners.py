@@ -128,12 +128,12 @@ def test_a_corner_of_each_arc(simulator):
 
 
 def test_random_frames_with_idle_clocks(simulator):
-    frames, settings, cut = random_sequence(1, 16)
+    frames, settings, cut = random_sequence(1, 8)
     play(simulator, frames, settings, cut, random_idle(sum(pixels(frames, cut)), 0.3, seed=2))
 
 
 def test_random_frames_without_a_gap(simulator):
-    play(simulator, *random_sequence(2, 16))
+    play(simulator, *random_sequence(2, 8))
 
 
 def test_narrow_frames_before_any_memory_is_written(simulator):
@@ -211,12 +211,12 @@ def test_the_last_pixel_is_enough(engine):
 
 
 @pytest.mark.parametrize("cut", [1, 200, 700, None])
-def test_reset(simulator, cut):
+def test_reset(large_simulator, cut):
     """Reset in the midst of a frame, or while one is being ended: what comes then is a new start."""
     frames = [arcs(seed, (HEIGHT, WIDTH)) for seed in range(3)]
     beats = grey_beats(frames, cut=[None, cut, None])
     reset = {"width": WIDTH, "height": HEIGHT, "reset_at": [len(beats) - WIDTH * HEIGHT], "drain_clocks": 120}
-    run = cocotb_run(corners_block(WIDTH, HEIGHT), simulator, {"i": beats}, DEFAULT, **reset)
+    run = cocotb_run(corners_block(WIDTH, HEIGHT), large_simulator, {"i": beats}, DEFAULT, **reset)
     items, before = received(run), int((run["o"].clock < run.resets[0]).sum())
     assert items[:before] == expected(frames[:2])[:before]
     assert items[before:] == expected(frames[2:])

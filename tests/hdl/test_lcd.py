@@ -70,7 +70,7 @@ def test_text(large_simulator, clock_hz, scale):
     assert captured["log"].tolist() == [IDLE | 1, DEPTH - len(text) << 8 | 1, IDLE, 0]
 
 
-def test_queue_in_order_while_there_is_space(simulator):
+def test_queue_in_order_while_there_is_space(large_simulator):
     """Three times what it holds, cleared, moved and written from right to left; at the end the last text stays."""
     random = np.random.default_rng(1)
     text = [(Op.PUT, DATA, byte) for byte in random.integers(32, 126, 3 * DEPTH).tolist()]
@@ -78,7 +78,7 @@ def test_queue_in_order_while_there_is_space(simulator):
     text += [(Op.PUT, COMMAND, byte) for byte in (0x01, 0x04, 0x8F)]
     text += [(Op.PUT, DATA, ord(character)) for character in reversed(TEXT[0])] + [(Op.PUT, COMMAND, 0x06)]
     text += list(written(TEXT))[17:]
-    captured = play(simulator, [*text, (Op.FINISH,), (Op.READ, STATUS), (Op.READ, ERRORS)])
+    captured = play(large_simulator, [*text, (Op.FINISH,), (Op.READ, STATUS), (Op.READ, ERRORS)])
     assert received(captured) == of_start() + bytes_of(text)
     assert captured["lines"].tolist() == TEXT and captured["log"].tolist() == [IDLE, 0]
 
@@ -116,21 +116,21 @@ def test_no_display(simulator, stuck, timeouts):
     assert captured["log"].tolist() == [IDLE, timeouts << 8]
 
 
-def test_limit(simulator):
+def test_limit(large_simulator):
     """Five milliseconds a byte, no less and hardly more."""
     program = [(Op.FINISH,), (Op.WRITE, ERRORS), (Op.WRITE, DATA, 65), (Op.IDLE, 4990), (Op.READ, ERRORS),
                (Op.IDLE, 30), (Op.READ, ERRORS)]  # fmt: skip
-    assert play(simulator, program, stuck=0xFF)["log"].tolist() == [0, 1 << 8]
+    assert play(large_simulator, program, stuck=0xFF)["log"].tolist() == [0, 1 << 8]
 
 
-def test_reset_in_the_middle(simulator):
+def test_reset_in_the_middle(large_simulator):
     """Of pauses, pulses and polls: the display is initialised again, and nothing that was queued is left."""
     text, program, scale = list(written(TEXT, Op.WRITE)), [], 0.02
     waits = [10, 350, 700, 1000, *range(1300, 1340, 3), *range(3000, 3030, 3)]
     for wait in waits:
         program += [*text, (Op.IDLE, wait), (Op.RESET,), (Op.READ, STATUS), (Op.READ, ERRORS)]
     program += [*text, (Op.FINISH,), (Op.READ, STATUS), (Op.READ, ERRORS), (Op.LOOK,)]
-    captured = play(simulator, program, scale=scale)
+    captured = play(large_simulator, program, scale=scale)
     assert captured["lines"].tolist() == TEXT
     assert received(captured)[-len(text) - 8 :] == of_start() + bytes_of(text)
     *before, status, errors, count = captured["log"].tolist()

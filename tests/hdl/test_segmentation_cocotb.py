@@ -39,7 +39,7 @@ def test_directed_patterns(simulator):
     )
     frames, idle = [], []
     for name in names:
-        for _, form in list(variants(directed()[name]))[:8]:
+        for _, form in list(variants(directed()[name]))[:4]:
             frames.append(form)
             idle += [WIDTH] + [0] * (form.size - 1)
     check_cocotb(simulator, frames, idle=np.array(idle))

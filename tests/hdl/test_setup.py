@@ -58,14 +58,14 @@ def test_table_then_live_values(simulator):
     assert not states[9].done and states[-1].done and not any(state.failed for state in states)
 
 
-def test_what_is_not_acknowledged_is_tried_again(simulator):
+def test_what_is_not_acknowledged_is_tried_again(large_simulator):
     """Twice, and then it has failed, until a restart."""
     program = [
         (Op.RESET, 1), (Op.REFUSE, 2), (Op.STRETCH, 15_000), finish(), (Op.STRETCH, 0),
         (Op.REFUSE, 3), (Op.RESTART,), (Op.FINISH, 1, PATIENCE), (Op.IDLE, 20_000),
         (Op.RESTART,), finish(), (Op.REFUSE, 3), (Op.VALUES, 1), (Op.FINISH, 1, PATIENCE), (Op.IDLE, 5000),
     ]  # fmt: skip
-    states, writes, _ = run(simulator, program)
+    states, writes, _ = run(large_simulator, program)
     everything = [*CONSTANTS, *live(0, 0)]
     assert values(writes) == [*everything, *everything]
     good, failed, rest, again, last = (states[k] for k in (3, 7, 8, 10, 14))
@@ -76,9 +76,9 @@ def test_what_is_not_acknowledged_is_tried_again(simulator):
 
 
 @pytest.mark.parametrize("line", [0, 1])
-def test_line_that_is_held(simulator, line):
+def test_line_that_is_held(large_simulator, line):
     """SCL or SDA held low: it fails and lets both lines go, and works again when they are free."""
-    states, writes, _ = run(simulator, [
+    states, writes, _ = run(large_simulator, [
         (Op.RESET, 1), (Op.HOLD, line), (Op.FINISH, 1, PATIENCE), (Op.HOLD, 2), (Op.RESTART,), finish(),
     ])  # fmt: skip
     assert states[2].failed and not states[2].writes
@@ -86,12 +86,12 @@ def test_line_that_is_held(simulator, line):
     assert states[-1].done and values(writes) == [*CONSTANTS, *live(0, 0)]
 
 
-def test_clock_that_is_held_in_a_transfer(simulator):
+def test_clock_that_is_held_in_a_transfer(large_simulator):
     """For longer than is bearable, 10 ms: this transfer fails, and those after it, until it is free and a restart."""
     program = [
         (Op.RESET, 1), (Op.IDLE, 2000), (Op.HOLD, 0), (Op.FINISH, 1, PATIENCE), (Op.HOLD, 2), (Op.RESTART,), finish(),
     ]  # fmt: skip
-    states, writes, _ = run(simulator, program)
+    states, writes, _ = run(large_simulator, program)
     assert (states[1].transfers, states[1].writes, states[3].failed) == (1, 0, 1)
     assert states[-1].done and values(writes)[-5:] == [*CONSTANTS, *live(0, 0)]
 

@@ -237,7 +237,7 @@ def test_wrong_packets(verilator):
     program.run(verilator)
 
 
-def test_registers(simulator):
+def test_registers(large_simulator):
     """Whole words are written, parts refused and counted; software takes over the video's size; then a reset."""
     program = Program()
     program.start()
@@ -267,7 +267,7 @@ def test_registers(simulator):
     program.read("threshold", 120)
     program.read("default_line", WIDTH)
     program.counters()
-    program.run(simulator)
+    program.run(large_simulator)
 
 
 def test_default_line(verilator):
