@@ -18,7 +18,13 @@ KEYS = {
     "posit_clocks_classic", "posit_clocks_centred", "posit_clocks_soft_float", "fpu_clocks",
     "system_clocks_five_markers", "firmware_bytes", "pose_latency_clocks",
 }  # fmt: skip
-FIRMWARE = ("posit_clocks_classic", "posit_clocks_soft_float", "fpu_clocks", "firmware_bytes", "pose_latency_clocks")
+FIRMWARE = (
+    "posit_clocks_classic",
+    pytest.param("posit_clocks_soft_float", marks=pytest.mark.long),
+    "fpu_clocks",
+    "firmware_bytes",
+    "pose_latency_clocks",
+)
 
 
 def counts(score):

@@ -139,7 +139,7 @@ def check_interrupts(port, before, least):
     )
 
 
-@pytest.mark.parametrize("seed", [2, 3, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(4, 8))])
+@pytest.mark.parametrize("seed", [3, *(pytest.param(seed, marks=pytest.mark.long) for seed in (2, *range(4, 8)))])
 def test_random_operands(port, seed):
     """All functions in turn; 2,880 pairs of each seed, singly and, with odd seeds, in chains."""
     before = port.job
@@ -179,7 +179,7 @@ def test_restart_in_the_middle_of_a_division(port):
     """At many a moment, and for as short as is allowed: the first call afterwards has its own result."""
     a, b = adversarial(port.room, 5)
     one, three = np.array([[0x3F800000], [0x40400000]], np.uint32)
-    for clocks in range(3000, 3600, 13):
+    for clocks in range(3000, 3600, 29):
         port.begin(a, b, function=DIVIDE, functions=1, seed=3)
         port.rtl.idle(clocks)
         port.rtl.halt(True)

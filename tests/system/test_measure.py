@@ -103,7 +103,9 @@ def test_poses_by_approximations_are_the_references(system):
     )
 
 
-@pytest.mark.parametrize("image", ["centred", "classic-exact", "classic-approximations"])
+@pytest.mark.parametrize(
+    "image", ["centred", "classic-exact", pytest.param("classic-approximations", marks=pytest.mark.long)]
+)
 def test_soft_float_is_the_same_arithmetic(system, image):
     """IEEE 754 leaves no choice: the unit and compiler-rt agree bit for bit, and only the clocks differ."""
     vertices = markers(20)
@@ -181,8 +183,9 @@ def test_square_root_of_the_library_is_the_units(system):
 
 @pytest.mark.parametrize("name", ["sin", "cos", "acos", "atan"])
 def test_functions_of_the_library_are_good_to_an_ulp_or_two(system, name):
-    result = measure_function(system, "hardware", name)
-    assert result.error_max < 3e-7 and result.clocks_mean > measure_function(system, "approximation", name).clocks_mean
+    """For 200 of the inputs; `python -m sim clocks` has all 1,000."""
+    result, approximation = (measure_function(system, library, name, 200) for library in ("hardware", "approximation"))
+    assert result.error_max < 3e-7 and result.clocks_mean > approximation.clocks_mean
 
 
 def test_the_library_has_no_approximations(system):

@@ -197,6 +197,7 @@ def test_markers_at_the_borders_of_a_frame_smaller_than_the_build():
     assert [len(result.markers) for result in expected] == [0] * 4 + [1] * 4
 
 
+@pytest.mark.long
 def test_full_hd():
     frame = scene(21, 1920, 1080, count=6, side_px=(60, 400))
     expected = check(sensor(1920, 1080), [frame])
