@@ -191,7 +191,7 @@ class Labelling(wiring.Component):
         ]
         m.d.comb += [
             self.late.append.eq(now.ends_run),
-            self.late.appended.first.eq(now.first),
+            self.late.appended.first.eq(~now.grown_has_run),
             self.late.appended.last.eq(now.last),
             self.late.index.eq(runs.index),
             self.late.unfirst.eq(now.latest_from_hand),

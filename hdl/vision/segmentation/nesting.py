@@ -49,10 +49,9 @@ DECISION = data.StructLayout(
         "hand_from_above": 1,  #: the component in hand does
         "latest_from_hand": 1,  #: the top takes the latest run of the component in hand, whose first is no first now
         "owner_now": Owner,  #: of the run in hand, after it has touched
-        "grown_has_run": 1,  #: the owner has a run in this row, after the touch and before this one
         "ends_run": 1,  #: the run in hand ends and is added to its owner, or becomes a component
-        "first": 1,  #: with these marks
-        "last": 1,
+        "grown_has_run": 1,  #: which has a run in this row already, so that this one is not its first
+        "last": 1,  #: this one is its last
         "advance": 1,  #: the run above is over
         "pop": 1,  #: it was its component's last
         "leave": 1,  #: the component that is popped is not that of the top, which then is over or goes into the hand
@@ -165,10 +164,9 @@ class Nesting(wiring.Component):
             o.grown_has_run.eq(
                 owned_by_top & top.has_run | owned_by_hand & hand.has_run | touch & ~first & top.has_run
             ),
-            o.first.eq(~o.grown_has_run),
             o.last.eq(~now_by_top | o.leave),
             runs.append.eq(o.ends_run),
-            runs.appended.first.eq(o.first),
+            runs.appended.first.eq(~o.grown_has_run),
             runs.appended.last.eq(o.last),
         ]
         top_2, hand_2 = Signal(_DESCRIPTOR), Signal(_DESCRIPTOR)
@@ -196,7 +194,7 @@ class Nesting(wiring.Component):
             stack.pop.eq(o.pop),
             o.leave.eq(o.pop & ~stack.below.hollow),
             o.to_hand.eq(o.leave & ~untouched & ~o.ends_run),
-            o.set_last.eq(o.leave & untouched & top.has_run & ~o.ends_run),
+            o.set_last.eq(o.leave & untouched & top.has_run),
             o.finish.eq(o.leave & untouched & ~top.has_run),
             runs.set_last.eq(o.set_last),
             runs.last_run.eq(top.latest),
