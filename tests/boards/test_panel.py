@@ -101,7 +101,7 @@ def given():
     return Program(clocks, which=which, value=value, **values)
 
 
-@pytest.fixture(scope="module", params=["verilator", pytest.param("icarus", marks=pytest.mark.long)])
+@pytest.fixture(scope="module", params=["verilator", "icarus"])
 def rows(request, given):
     if reason := missing(request.param):
         pytest.skip(reason)

@@ -210,13 +210,13 @@ def test_the_last_pixel_is_enough(engine):
         assert run["o"].clock.tolist() == [run.accepted["i"][-1] + 25]
 
 
-@pytest.mark.parametrize("cut", [1, 200, 700, None])
-def test_reset(large_simulator, cut):
+@pytest.mark.parametrize("cut", [1, pytest.param(200, marks=pytest.mark.long), 700, None])
+def test_reset(simulator, cut):
     """Reset in the midst of a frame, or while one is being ended: what comes then is a new start."""
     frames = [arcs(seed, (HEIGHT, WIDTH)) for seed in range(3)]
     beats = grey_beats(frames, cut=[None, cut, None])
     reset = {"width": WIDTH, "height": HEIGHT, "reset_at": [len(beats) - WIDTH * HEIGHT], "drain_clocks": 120}
-    run = cocotb_run(corners_block(WIDTH, HEIGHT), large_simulator, {"i": beats}, DEFAULT, **reset)
+    run = cocotb_run(corners_block(WIDTH, HEIGHT), simulator, {"i": beats}, DEFAULT, **reset)
     items, before = received(run), int((run["o"].clock < run.resets[0]).sum())
     assert items[:before] == expected(frames[:2])[:before]
     assert items[before:] == expected(frames[2:])

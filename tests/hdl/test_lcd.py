@@ -123,14 +123,14 @@ def test_limit(large_simulator):
     assert play(large_simulator, program, stuck=0xFF)["log"].tolist() == [0, 1 << 8]
 
 
-def test_reset_in_the_middle(large_simulator):
+def test_reset_in_the_middle(simulator):
     """Of pauses, pulses and polls: the display is initialised again, and nothing that was queued is left."""
     text, program, scale = list(written(TEXT, Op.WRITE)), [], 0.02
     waits = [10, 350, 700, 1000, *range(1300, 1340, 3), *range(3000, 3030, 3)]
     for wait in waits:
         program += [*text, (Op.IDLE, wait), (Op.RESET,), (Op.READ, STATUS), (Op.READ, ERRORS)]
     program += [*text, (Op.FINISH,), (Op.READ, STATUS), (Op.READ, ERRORS), (Op.LOOK,)]
-    captured = play(large_simulator, program, scale=scale)
+    captured = play(simulator, program, scale=scale)
     assert captured["lines"].tolist() == TEXT
     assert received(captured)[-len(text) - 8 :] == of_start() + bytes_of(text)
     *before, status, errors, count = captured["log"].tolist()

@@ -271,15 +271,14 @@ def test_marks_overflow():
 def test_emitted_verilog(simulator):
     """Markers, a cut frame, idle clocks and a reset in both simulators: the same, clock for clock."""
     random = np.random.default_rng(4)
-    width, height = size = (64, 48)
-    sides = ((25, 35), (20, 21), (30, 35), (16, 18), (20, 25))
-    frames = [drawn(random, size, pair) for pair in sides]
-    beats = binary_beats(frames, cut=[None, 2200, 1400, None, None])
-    at = frames[0].size + 3600
+    sides = ((30, 45), (30, 31), (40, 45), (16, 18))
+    frames = [drawn(random, SMALL, pair) for pair in sides]
+    beats = binary_beats(frames, cut=[None, 2700, 1800, None])
+    at = frames[0].size + 4500
     idle = random_idle(len(beats), 0.3, seed=5)
     idle[frames[0].size :] = 0
     given, options = {"i": (beats, idle)}, {"drain_clocks": 1200, "reset_at": [at]}
-    run = cocotb_run(Chain, simulator, given, settings(frames[0]), width=width, height=height, **options)
-    engine = StreamEngine(Chain, *size)  # Afresh: memories, and what marks carry along, outlive a reset.
+    run = cocotb_run(Chain, simulator, given, settings(frames[0]), width=SMALL[0], height=SMALL[1], **options)
+    engine = StreamEngine(Chain, *SMALL)  # Afresh: memories, and what marks carry along, outlive a reset.
     assert_same(run, engine.run(given, settings(frames[0]), **options))
-    assert check(frames_of(run, size, since=run.resets[0]), frames[3:], note=simulator) > 2
+    assert check(frames_of(run, SMALL, since=run.resets[0]), frames[3:], note=simulator) > 4
